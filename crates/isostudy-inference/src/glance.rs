@@ -16,6 +16,8 @@ pub struct Row {
     pub pair: String,
     /// Where, without a space before it; empty for all answers.
     pub place: String,
+    /// Whether it is over all answers that compare the two.
+    pub is_whole: bool,
     /// Whether it is the difference of two shares, not a share.
     pub is_difference: bool,
     /// Its verdict.
@@ -119,6 +121,7 @@ fn row(study: Option<&Study>, hypothesis: &Hypothesis, turned: bool) -> Option<R
     Some(Row {
         pair: format!("{first} over {second}"),
         place,
+        is_whole: is_whole(hypothesis),
         is_difference,
         standing: standing(hypothesis.conclusion()),
         answers: answers.filter(|_| !is_difference),
@@ -156,9 +159,11 @@ fn standing(conclusion: Conclusion) -> Standing {
         Conclusion::Differs | Conclusion::DiffersWithinMargin => Standing::Holds,
         Conclusion::Equal => Standing::Equal,
         Conclusion::TooFew => Standing::TooFew,
-        Conclusion::Open | Conclusion::AveragesOut | Conclusion::NobodyLeans | Conclusion::NotTested => {
-            Standing::Open
-        }
+        Conclusion::Open
+        | Conclusion::AveragesOut
+        | Conclusion::HiddenBySide
+        | Conclusion::NobodyLeans
+        | Conclusion::NotTested => Standing::Open,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Every hypothesis that is tested, with p adjusted within its family.
 
 use crate::ballots::BallotGroup;
-use crate::omnibus;
+use crate::omnibus::{self, Omnibus};
 use isostudy_design::Level;
 use isostudy_design::Study;
 use isostudy_design::config::AnalysisSection;
@@ -58,6 +58,8 @@ pub enum Conclusion {
     Equal,
     /// The mean is smaller than the margin, and the preference depends on the object: opposite ones may have such a mean.
     AveragesOut,
+    /// The mean is smaller than the margin, and people favour a side: who answers by the side hides what is preferred.
+    HiddenBySide,
     /// Neither can be said.
     Open,
     /// No outcome of so few participants who lean one way or the other could have shown anything.
@@ -76,6 +78,7 @@ impl Conclusion {
             Self::DiffersWithinMargin => "differs, within the margin",
             Self::Equal => "equal within the margin",
             Self::AveragesOut => "averages out",
+            Self::HiddenBySide => "hidden by a side",
             Self::Open => "open",
             Self::TooFew => "too few",
             Self::NobodyLeans => "nobody leans",
@@ -173,6 +176,8 @@ pub struct Hypothesis {
     pub family_size: usize,
     /// Whether the same preference was shown to depend on the object.
     by_object: bool,
+    /// Whether people were shown to favour a side.
+    by_side: bool,
     /// What decides its conclusion.
     pub rules: Rules,
 }
@@ -192,8 +197,14 @@ impl Hypothesis {
             corrected_with: String::new(),
             family_size: 1,
             by_object: false,
+            by_side: false,
             rules,
         }
+    }
+
+    /// Says that people were shown to favour a side: what is equal within the margin may then be hidden by it.
+    pub(crate) fn mark_side(&mut self) {
+        self.by_side = true;
     }
 
     /// Whether anybody has a score.
@@ -211,6 +222,7 @@ impl Hypothesis {
             (true, false) => Conclusion::Differs,
             (true, true) => Conclusion::DiffersWithinMargin,
             (false, true) if self.by_object => Conclusion::AveragesOut,
+            (false, true) if self.by_side => Conclusion::HiddenBySide,
             (false, true) => Conclusion::Equal,
             (false, false) => Conclusion::Open,
         }
@@ -330,10 +342,7 @@ fn mark_by_object(study: &Study, ballots: &[DeclaredBallot], all: &mut [Hypothes
     }
     let omnibus = omnibus::tests(study, ballots);
     let depends: Vec<[Level; 2]> = contrasts_of(all)
-        .filter(|(h, levels, over)| {
-            let differ = matches!(over, Over::ObjectDifference(..)) && h.adjusted <= h.rules.level;
-            differ || omnibus::depends_on_object(&omnibus, *levels, h.rules.level).is_some()
-        })
+        .filter(|(h, levels, _)| depends_on_object(all, &omnibus, *levels, h.rules.level).is_some())
         .map(|(_, levels, _)| levels)
         .collect();
     for hypothesis in all {
@@ -341,6 +350,32 @@ fn mark_by_object(study: &Study, ballots: &[DeclaredBallot], all: &mut [Hypothes
             hypothesis.by_object = depends.contains(&levels);
         }
     }
+}
+
+/// What shows that a preference depends on the object.
+#[derive(Debug, Clone, Copy)]
+pub enum Dependence<'a> {
+    /// Friedman's test over objects.
+    Omnibus(&'a Omnibus),
+    /// The clearest difference between two objects.
+    Difference(&'a Hypothesis),
+}
+
+/// What shows that the preference between two levels depends on the object; `None` if nothing does.
+pub fn depends_on_object<'a>(
+    all: &'a [Hypothesis],
+    omnibus: &'a [Omnibus],
+    levels: [Level; 2],
+    level: f64,
+) -> Option<Dependence<'a>> {
+    if let Some(of) = omnibus::depends_on_object(omnibus, levels, level) {
+        return Some(Dependence::Omnibus(of));
+    }
+    let differ = contrasts_of(all).filter(|(h, l, over)| {
+        matches!(over, Over::ObjectDifference(..)) && *l == levels && h.adjusted <= level
+    });
+    let clearest = differ.min_by(|(a, ..), (b, ..)| a.test.sign_flip.ln_p.total_cmp(&b.test.sign_flip.ln_p));
+    clearest.map(|(of, ..)| Dependence::Difference(of))
 }
 
 /// Every contrast that was tested.

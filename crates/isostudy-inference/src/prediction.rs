@@ -1,22 +1,26 @@
 //! What predicts preference? People's choices against measures of the meshes that they were shown.
 //!
 //! For each [`Metric`]: how often the item with the better value was chosen, and a model of choice on the difference,
-//! judged on objects that it was not fitted to. Everything is clustered on participants, so intervals speak of other
-//! people before the same pairs; nothing here speaks of other objects beyond what leaving one out shows.
+//! judged on objects that it was not fitted to. Intervals and sign-flip tests are clustered on participants, so they speak of
+//! other people before the same pairs. [`Relabelled`] speaks of other methods. A metric [holds](MetricPrediction::holds) if both
+//! tests do. Nothing here speaks of other objects beyond what leaving one out shows.
 
 mod better;
 mod held_out;
 mod metric;
+mod relabelled;
 
 pub use better::Better;
 pub use held_out::HeldOut;
 pub use metric::{METRICS, Metric, Scale};
+pub use relabelled::Relabelled;
 
 use crate::inputs::Inputs;
 use crate::mesh_set::MeshSet;
 use isostudy_design::Study;
 use isostudy_design::record::Purpose;
 use isostudy_statistics::{Coefficient, DeclaredBallot, FitError, ShownBallot, holm, regression, spearman};
+use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// One metric over the study's questions.
@@ -37,10 +41,14 @@ pub struct MetricPrediction {
     pub showings: u64,
     /// The sign-flip p, adjusted by Holm over the metrics.
     pub adjusted: f64,
+    /// Whether other orders of the methods go with the answers as well; `None` for fewer than three methods.
+    pub relabelled: Option<Relabelled>,
     /// Log-odds of being chosen for one `unit` of advantage.
     pub coefficient: Result<Coefficient, FitError>,
     /// Predictions of each object from the others.
     pub held_out: Option<HeldOut>,
+    /// The p of a gain on objects left out, by Holm over the metrics that have one.
+    pub gain_adjusted: Option<f64>,
 }
 
 /// All metrics, and what they have to be read against.
@@ -85,8 +93,20 @@ impl Prediction {
                 metrics.push(MetricPrediction::of(metric, advantages, study, (shown, declared)));
             }
         }
-        let p: Vec<f64> = metrics.iter().map(|m| m.better.test.sign_flip.p()).collect();
-        metrics.iter_mut().zip(holm(&p)).for_each(|(metric, p)| metric.adjusted = p);
+        let shown_methods: Vec<([usize; 2], usize)> = study
+            .comparisons
+            .iter()
+            .map(|c| ([&c.left, &c.right].map(|id| study.place(id.method)), c.object))
+            .collect();
+        let methods = study.method_ids();
+        let answers = relabelled::Answers::of(methods.len(), &shown_methods, declared);
+        metrics.par_iter_mut().for_each(|of| {
+            let value = |object: usize, method| meshes.at(object, methods[method]).and_then(of.metric.value);
+            let advantage =
+                |[a, b]: [usize; 2], object| of.metric.advantage(value(object, a)?, value(object, b)?);
+            of.relabelled = answers.relabelled(&advantage);
+        });
+        adjust(&mut metrics);
         let complete = |q: usize| {
             metrics.iter().map(|m| m.advantages[q].map(|a| a / m.unit)).collect::<Option<Vec<f64>>>()
         };
@@ -115,7 +135,42 @@ impl Prediction {
     }
 }
 
+/// Every p by Holm over the metrics that have one.
+fn adjust(metrics: &mut [MetricPrediction]) {
+    fn over(
+        metrics: &mut [MetricPrediction],
+        p: impl Fn(&MetricPrediction) -> Option<f64>,
+        set: impl Fn(&mut MetricPrediction, f64),
+    ) {
+        let tested: Vec<(usize, f64)> =
+            metrics.iter().enumerate().filter_map(|(i, of)| Some((i, p(of)?))).collect();
+        let adjusted = holm(&tested.iter().map(|&(_, p)| p).collect::<Vec<_>>());
+        tested.into_iter().zip(adjusted).for_each(|((i, _), p)| set(&mut metrics[i], p));
+    }
+    over(metrics, |of| Some(of.better.test.sign_flip.p()), |of, p| of.adjusted = p);
+    over(
+        metrics,
+        |of| of.relabelled.map(|of| of.p),
+        |of, p| {
+            of.relabelled.iter_mut().for_each(|of| of.adjusted = p);
+        },
+    );
+    over(metrics, |of| of.held_out.as_ref()?.gain_p, |of, p| of.gain_adjusted = Some(p));
+}
+
 impl MetricPrediction {
+    /// Whether it goes with preference, or against it, before other people and among other methods: both p, after Holm's
+    /// correction over the metrics, are at most `level`.
+    pub fn holds(&self, level: f64) -> bool {
+        self.adjusted <= level && self.relabelled.is_some_and(|of| of.adjusted <= level)
+    }
+
+    /// Whether it foretells objects that it was not fitted to: it holds, and the one-sided p of its gain, after Holm's correction
+    /// over the metrics, is at most half of `level`.
+    pub fn foretells(&self, level: f64) -> bool {
+        self.holds(level) && self.gain_adjusted.is_some_and(|p| p <= level / 2.0)
+    }
+
     fn of(
         metric: &'static Metric,
         advantages: Vec<Option<f64>>,
@@ -142,6 +197,8 @@ impl MetricPrediction {
             showings: right.len() as u64,
             held_out: HeldOut::of(study, &x, declared),
             adjusted: 1.0,
+            relabelled: None,
+            gain_adjusted: None,
             metric,
             unit,
             advantages,

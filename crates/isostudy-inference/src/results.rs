@@ -4,11 +4,13 @@ use crate::agreement::Agreement;
 use crate::answered::Answered;
 use crate::audit::{self, audit};
 use crate::ballots::{ALL_METHODS, BallotGroup};
+use crate::conclusions::Conclusions;
 use crate::decision::{Front, ObjectCandidates, Pick, candidates, fronts, picks};
 use crate::glance;
 use crate::hypotheses::{self, Hypothesis, Robustness, Rules};
 use crate::inputs::Inputs;
 use crate::leave_one_out::WithoutOne;
+use crate::liking::Liking;
 use crate::majorities::Majorities;
 use crate::models::{self, GroupModel};
 use crate::omnibus::{self, Omnibus};
@@ -34,8 +36,12 @@ pub struct Results<'a> {
     pub preferences: Option<Preferences<'a>>,
     /// What predicts preference, where answers and meshes tell it.
     pub prediction: Option<Prediction>,
+    /// Who is liked most: on all objects, then on each; empty without answers.
+    pub likings: Vec<Liking>,
     /// Which method to take.
     pub decision: Decision<'a>,
+    /// What was found in answers; empty without any.
+    pub conclusions: Conclusions,
 }
 
 impl<'a> Results<'a> {
@@ -46,9 +52,19 @@ impl<'a> Results<'a> {
             let prediction = || Prediction::of(inputs, &answered.shown, &answered.declared);
             Some(rayon::join(|| Preferences::of_study(inputs.study, answered), prediction))
         };
-        let (answers, decision) = rayon::join(of_answers, || Decision::of(inputs));
+        let of_meshes = || {
+            let level = Rules::of(&inputs.study.file.analysis).level;
+            let likings = inputs.answers.map_or_else(Vec::new, |of| Liking::all(inputs.study, of, level));
+            let decision = Decision::of(inputs, &likings);
+            (likings, decision)
+        };
+        let (answers, (likings, decision)) = rayon::join(of_answers, of_meshes);
         let (preferences, prediction) = answers.unzip();
-        Self { inputs: *inputs, preferences, prediction: prediction.flatten(), decision }
+        let prediction = prediction.flatten();
+        let conclusions = preferences.as_ref().map_or_else(Conclusions::default, |of: &Preferences<'_>| {
+            of.conclusions.clone().with(&likings, prediction.as_ref(), of.rules().level)
+        });
+        Self { inputs: *inputs, preferences, prediction, likings, decision, conclusions }
     }
 }
 
@@ -63,8 +79,8 @@ pub struct Decision<'a> {
 }
 
 impl<'a> Decision<'a> {
-    fn of(inputs: &Inputs<'a>) -> Self {
-        let objects = candidates(inputs);
+    fn of(inputs: &Inputs<'a>, likings: &[Liking]) -> Self {
+        let objects = candidates(inputs, likings);
         let fronts = objects.iter().map(|of| fronts(&of.candidates)).collect();
         Self { picks: picks(&objects), fronts, objects }
     }
@@ -122,6 +138,8 @@ pub struct Preferences<'a> {
     pub audit: Vec<audit::Report>,
     /// Answers by the screen that they were given on.
     pub screens: Vec<Compared>,
+    /// What was found.
+    pub conclusions: Conclusions,
 }
 
 impl<'a> Preferences<'a> {
@@ -170,9 +188,7 @@ impl<'a> Preferences<'a> {
 
     /// Whether the probes found that people favour a side.
     pub fn is_side_favoured(&self) -> bool {
-        let found =
-            |of: &audit::Report| (of.probe, of.finding) == (audit::Probe::Side, audit::Finding::Found);
-        self.audit.iter().any(found)
+        self.audit.iter().any(finds_side)
     }
 
     /// How large a liking for a side would undo a hypothesis that holds; `None` where sides cannot have made it.
@@ -180,6 +196,11 @@ impl<'a> Preferences<'a> {
         let place = self.hypotheses.iter().position(|of| of.is_about_the_same(hypothesis))?;
         self.undone[place]
     }
+}
+
+/// Whether a probe found that people favour a side.
+fn finds_side(of: &audit::Report) -> bool {
+    (of.probe, of.finding) == (audit::Probe::Side, audit::Finding::Found)
 }
 
 /// What the rest is computed from.
@@ -227,11 +248,16 @@ impl<'a> Base<'a> {
             || rayon::join(people, || rayon::join(|| audit(&recorded.audited(probed)), tested)),
         );
         let ((without_one, majorities), (robustness, undone)) = tested;
+        let mut hypotheses = hypotheses;
+        if audit.iter().any(finds_side) {
+            hypotheses.to_mut().iter_mut().for_each(Hypothesis::mark_side);
+        }
         let agreement = match study {
             Some(study) => of_study(study, &declared),
             None => vec![of_groups(groups, &recorded, &declared)],
         };
-        Preferences {
+        let mut found = Preferences {
+            conclusions: Conclusions::default(),
             contrasts: glance::rows(study, &hypotheses),
             omnibus: study.map_or_else(Vec::new, |study| omnibus::tests(study, &declared)),
             screens: screens::compared(responses),
@@ -254,7 +280,9 @@ impl<'a> Base<'a> {
             respondents,
             screened,
             audit,
-        }
+        };
+        found.conclusions = Conclusions::of(&found);
+        found
     }
 }
 

@@ -22,6 +22,7 @@ mod screens;
 mod sides;
 mod summary;
 mod tipping;
+mod told;
 mod worths;
 
 pub use crate::statement::{Block, Finding, Published, Section, Standing};

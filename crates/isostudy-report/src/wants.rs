@@ -1,6 +1,9 @@
 //! What somebody may want of a mesh, in words.
 
-use isostudy_inference::decision::Goal;
+use isostudy_inference::decision::{Goal, Pick};
+use isostudy_inference::inputs::Inputs;
+use isostudy_inference::results::Results;
+use isostudy_timing::beside_other_work;
 
 /// The words for a purpose.
 pub(crate) struct Words {
@@ -16,6 +19,24 @@ pub(crate) struct Words {
     pub(crate) says: &'static str,
 }
 
+/// The picks that stand on evidence: where a run was measured beside other work, nothing that times decide.
+pub(crate) fn judged<'r, 'a>(results: &'r Results<'a>) -> Vec<&'r Pick<'a>> {
+    let is_busy = busy(&results.inputs).is_some();
+    results.decision.picks.iter().filter(|pick| !is_busy || !is_of_times(pick.want.goal)).collect()
+}
+
+/// Why times decide nothing, in a sentence; `None` where they do.
+pub(crate) fn busy(inputs: &Inputs<'_>) -> Option<String> {
+    let why = inputs.bench.and_then(beside_other_work)?;
+    Some(format!(
+        "Times decide nothing here, because the run was {why}. Run it again on a machine that is left alone."
+    ))
+}
+
+fn is_of_times(goal: Goal) -> bool {
+    matches!(goal, Goal::Fastest | Goal::Chunk | Goal::Edit | Goal::Faultless | Goal::Topology)
+}
+
 /// What a purpose is called.
 pub(crate) fn words(goal: Goal) -> Words {
     let [name, heading, unit, phrase, says] = match goal {
@@ -23,8 +44,8 @@ pub(crate) fn words(goal: Goal) -> Words {
             "preferred",
             "most liked",
             "{}",
-            "the look that people chose most",
-            "mean score {}, from \u{2212}1 to 1",
+            "the look that people like most",
+            "worth {}, in log-odds above the mean of all methods",
         ],
         Goal::Fastest => ["fastest", "shortest time", "{} ms", "the shortest time", "{} ms"],
         Goal::Chunk => ["chunk", "shortest chunk", "{} ms", "the shortest time for a chunk", "{} ms"],

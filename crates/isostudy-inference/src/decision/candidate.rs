@@ -1,15 +1,14 @@
 //! The methods of each object, with what is known of them.
 
 use super::Estimate;
-use crate::answered::Answered;
 use crate::inputs::Inputs;
+use crate::liking::{Liking, Top};
 use crate::mesh_set::{MeshSet, known};
 use isostudy_design::config::ObjectSection;
 use isostudy_design::record::{BenchRun, ChunkTimes, Distribution, MeshRecord, Purpose};
 use isostudy_design::{ConfigurationId, Method, MethodId, Study};
-use isostudy_statistics::interval::{Interval, LEVEL, of_mean_score};
+use isostudy_statistics::interval::LEVEL;
 use isostudy_statistics::median;
-use std::collections::BTreeMap;
 
 /// How many standard errors a mean may be off at 95 %.
 const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
@@ -24,6 +23,8 @@ pub struct ObjectCandidates<'a> {
     pub object: &'a ObjectSection,
     /// The methods on it.
     pub candidates: Vec<Candidate<'a>>,
+    /// The most liked on it, where that is known.
+    pub most_liked: Option<Top>,
 }
 
 /// A method on one object, at the benchmark spacing or what its budget made of it.
@@ -45,7 +46,7 @@ pub struct Candidate<'a> {
     pub error: Option<Estimate>,
     /// Mean distance from the isosurface's sharp edges to the mesh, in the same unit; `None` if it has none.
     pub sharp_edges: Option<Estimate>,
-    /// Mean over people of the answers for it less those against it, per answer that showed it on this object: 1 is always chosen.
+    /// Its log worth on this object less the mean of all methods', in log-odds: see [`Liking`].
     pub preference: Option<Estimate>,
 }
 
@@ -113,11 +114,12 @@ impl Candidate<'_> {
 }
 
 /// The candidates of every object that has any. A method that differs from an earlier one in its look alone is none.
-pub fn candidates<'a>(inputs: &Inputs<'a>) -> Vec<ObjectCandidates<'a>> {
+pub fn candidates<'a>(inputs: &Inputs<'a>, likings: &[Liking]) -> Vec<ObjectCandidates<'a>> {
     let study = inputs.study;
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
     let methods: Vec<&Method> = study.methods.iter().filter(|method| !is_repeated(study, method)).collect();
     let of_object = |(place, object): (usize, &'a ObjectSection)| {
+        let liking = likings.iter().find(|of| of.object == Some(place));
         let candidate = |method: &&'a Method| {
             let mesh = meshes.at(place, method.id)?;
             let unit = object.benchmark_spacing;
@@ -134,10 +136,16 @@ pub fn candidates<'a>(inputs: &Inputs<'a>) -> Vec<ObjectCandidates<'a>> {
                     .and_then(|run| run.memory.iter().find(|peak| peak.id == id)?.of_extraction()),
                 error: error(mesh, unit),
                 sharp_edges: mesh.accuracy.sharp_edges.as_ref().and_then(mean).map(|mean| mean.per(unit)),
-                preference: inputs.answers.and_then(|answers| preference(study, answers, place, method.id)),
+                preference: liking
+                    .and_then(|of| of.worth(method.id))
+                    .map(|(worth, interval)| Estimate::within(worth, interval)),
             })
         };
-        ObjectCandidates { object, candidates: methods.iter().filter_map(candidate).collect() }
+        ObjectCandidates {
+            object,
+            candidates: methods.iter().filter_map(candidate).collect(),
+            most_liked: liking.and_then(|of| of.top.clone()),
+        }
     };
     let all = study.file.objects.iter().enumerate().map(of_object);
     all.filter(|of| !of.candidates.is_empty()).collect()
@@ -172,28 +180,4 @@ fn mean(of: &Distribution) -> Option<Estimate> {
     let mean = known(of, |of| of.mean)?;
     let half = NORMAL_QUANTILE * of.sd / (of.count as f64).sqrt();
     Some(Estimate { value: mean, low: mean - half, high: mean + half })
-}
-
-fn preference(study: &Study, answers: &Answered, object: usize, method: MethodId) -> Option<Estimate> {
-    let place = study.place(method);
-    let mut people: BTreeMap<usize, (i64, i64)> = BTreeMap::new();
-    for ballot in &answers.declared {
-        if study.comparisons[ballot.question()].object != object {
-            continue;
-        }
-        let sign = match place {
-            place if place == ballot.first() => ballot.preference().sign(),
-            place if place == ballot.second() => -ballot.preference().sign(),
-            _ => continue,
-        };
-        let (sum, shown) = people.entry(ballot.participant()).or_default();
-        (*sum, *shown) = (*sum + sign, *shown + 1);
-    }
-    let mut scores: Vec<f64> = people.values().map(|&(sum, shown)| sum as f64 / shown as f64).collect();
-    // Sums of doubles depend on their order, and people come in any.
-    scores.sort_by(f64::total_cmp);
-    let mean = scores.iter().sum::<f64>() / scores.len() as f64;
-    let interval = of_mean_score(&scores, 1.0)
-        .map(|Interval { low, high }| Interval { low: low.max(-1.0), high: high.min(1.0) });
-    (!scores.is_empty()).then(|| Estimate::within(mean, interval))
 }

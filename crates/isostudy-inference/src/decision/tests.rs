@@ -1,4 +1,5 @@
 use super::*;
+use crate::Liking;
 use crate::fixture::{self, Everything};
 use isostudy_design::ConfigurationId;
 use isostudy_design::record::{ChunkTimes, MeshRecord, Purpose};
@@ -45,7 +46,7 @@ fn who_is_beaten_in_both_is_named_with_those_who_beat_them() {
     ];
     let all = planted(&values);
     let ids = all.study.method_ids();
-    let objects = candidates(&all.inputs());
+    let objects = candidates(&all.inputs(), &[]);
     assert_eq!(objects.len(), 3);
     for of in &objects {
         let fronts = fronts(&of.candidates);
@@ -84,7 +85,7 @@ fn the_best_of_each_want_is_picked_with_its_price() {
             mesh.topology.self_intersections = Some(7);
         }
     }
-    let objects = candidates(&all.inputs());
+    let objects = candidates(&all.inputs(), &[]);
     let picks = picks(&objects);
     let of = |goal: Goal| -> Vec<&Pick<'_>> { picks.iter().filter(|pick| pick.want.goal == goal).collect() };
     let [fastest] = of(Goal::Fastest)[..] else { panic!("one method is the fastest on all objects") };
@@ -108,7 +109,7 @@ fn of_those_not_told_apart_in_time_the_closest_is_taken() {
     // The third is no closer than the fourth as far as can be told, and slower.
     let all = planted(&[[10.0, 0.1], [5.0, 0.4], [5.02, 0.299999], [5.01, 0.3], [8.0, 0.2], [30.0, 0.05]]);
     let ids = all.study.method_ids();
-    let objects = candidates(&all.inputs());
+    let objects = candidates(&all.inputs(), &[]);
     let picks = picks(&objects);
     let fastest = picks.iter().find(|pick| pick.want.goal == Goal::Fastest).unwrap();
     assert_eq!((fastest.method.id, fastest.on.len()), (ids[3], 3));
@@ -150,7 +151,7 @@ fn chunks_and_edits_are_compared_one_by_one() {
         }
     }
     let inputs = crate::inputs::Inputs { chunks: &chunks, ..all.inputs() };
-    let objects = candidates(&inputs);
+    let objects = candidates(&inputs, &[]);
     let picks = picks(&objects);
     for goal in [Goal::Chunk, Goal::Edit] {
         let [pick] = picks.iter().filter(|pick| pick.want.goal == goal).collect::<Vec<_>>()[..] else {
@@ -172,7 +173,7 @@ fn who_is_much_slower_is_not_taken_for_the_fastest() {
         // Every third round takes ten times as long, so that all intervals meet.
         sample.total_s *= if sample.iteration % 3 == 0 { 10.0 } else { 1.0 + 1e-9 * i as f64 };
     }
-    let objects = candidates(&all.inputs());
+    let objects = candidates(&all.inputs(), &[]);
     let picks = picks(&objects);
     let fastest = picks.iter().find(|pick| pick.want.goal == Goal::Fastest).unwrap();
     assert_eq!((fastest.method.id, fastest.on.len()), (ids[1], 3));
@@ -186,7 +187,7 @@ fn an_error_below_the_least_that_is_told_apart_counts_as_that() {
     for mesh in all.meshes.iter_mut().filter(|mesh| mesh.id.method == ids[4]) {
         plant_error(mesh, 0.0);
     }
-    let objects = candidates(&all.inputs());
+    let objects = candidates(&all.inputs(), &[]);
     assert!(objects.iter().all(ObjectCandidates::has_least_error));
     let picks = picks(&objects);
     let closest: Vec<&Pick<'_>> = picks.iter().filter(|pick| pick.want.goal == Goal::Closest).collect();
@@ -196,38 +197,61 @@ fn an_error_below_the_least_that_is_told_apart_counts_as_that() {
     assert!((fastest.on[0].cost.error.unwrap() - 0.6 / LEAST_ERROR).abs() < 1e-6);
 }
 
-/// bi on the sphere: 54 people's answers to the questions with it, counted from the file once more by hand.
+/// Davidson's own iteration (1970, J. Am. Statist. Ass. 65:317, section 3) on answers counted from the file by hand, object by object.
 #[test]
-fn a_preference_is_the_mean_over_people_of_answers_for_less_answers_against() {
+fn a_preference_is_the_log_worth_less_the_mean_of_all() {
     let all = Everything::of(fixture::study());
-    let objects = candidates(&all.inputs());
+    let objects = candidates(&all.inputs(), &Liking::all(&all.study, &all.answers, 0.05));
     let text = std::fs::read_to_string(all.study.responses.as_deref().unwrap()).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     for of in &objects {
-        for candidate in &of.candidates {
-            let mut scores = Vec::new();
+        // Of each pair: answers for the first, for neither, for the second.
+        let mut pairs: Vec<(usize, usize, [f64; 3])> = Vec::new();
+        for comparison in all.study.comparisons.iter().filter(|c| c.left.object == of.object.id) {
+            let column = rows[0].iter().position(|name| *name == comparison.question).unwrap();
+            let mut counts = [0.0; 3];
             for row in &rows[1..] {
-                let (mut sum, mut shown) = (0.0, 0.0);
-                for comparison in all.study.comparisons.iter().filter(|c| c.left.object == of.object.id) {
-                    let column = rows[0].iter().position(|name| *name == comparison.question).unwrap();
-                    let sign = match candidate.id() {
-                        id if id == comparison.left.method => 1.0,
-                        id if id == comparison.right.method => -1.0,
-                        _ => continue,
-                    };
-                    shown += 1.0;
-                    sum += match row[column].trim() {
-                        "L" => sign,
-                        "R" => -sign,
-                        _ => 0.0,
-                    };
-                }
-                scores.push(sum / shown);
+                counts[["L", "NP", "R"].iter().position(|of| *of == row[column].trim()).unwrap()] += 1.0;
             }
-            let mean = scores.iter().sum::<f64>() / scores.len() as f64;
+            let [a, b] = [&comparison.left, &comparison.right].map(|id| all.study.place(id.method));
+            pairs.push((a, b, counts));
+        }
+        let (mut worths, mut nu) = (vec![1.0_f64; 6], 0.3);
+        let is_separated = (0..6).any(|i| {
+            let won = |(a, b, [x, t, y]): &(usize, usize, [f64; 3])| match i {
+                i if i == *a => x + t,
+                i if i == *b => y + t,
+                _ => 0.0,
+            };
+            pairs.iter().map(won).sum::<f64>() == 0.0
+        });
+        assert!(!is_separated, "{}", of.object.id);
+        for _ in 0..20_000 {
+            let (mut score, mut weight, mut ties, mut tied) = (vec![0.0; 6], vec![0.0; 6], 0.0, 0.0);
+            for &(a, b, [x, t, y]) in &pairs {
+                let root = (worths[a] * worths[b]).sqrt();
+                let share = (x + t + y) / (worths[a] + worths[b] + nu * root);
+                for (i, j, wins) in [(a, b, x), (b, a, y)] {
+                    score[i] += 2.0 * wins + t;
+                    weight[i] += share * (2.0 + nu * (worths[j] / worths[i]).sqrt());
+                }
+                ties += t;
+                tied += share * root;
+            }
+            (0..6).for_each(|i| worths[i] = score[i] / weight[i]);
+            nu = ties / tied;
+        }
+        let mean = worths.iter().map(|w| w.ln()).sum::<f64>() / 6.0;
+        for candidate in &of.candidates {
+            let want = worths[all.study.place(candidate.id())].ln() - mean;
             let found = candidate.preference.unwrap();
-            assert!((found.value - mean).abs() < 1e-12, "{} {}", of.object.id, candidate.id());
-            assert!(found.low <= mean && mean <= found.high);
+            assert!(
+                (found.value - want).abs() < 1e-6,
+                "{} {}: {found:?} {want}",
+                of.object.id,
+                candidate.id()
+            );
+            assert!(found.low <= found.value && found.value <= found.high);
         }
     }
 }
@@ -238,6 +262,6 @@ fn a_look_is_no_method_and_same_cells_are_one_place_on_a_front() {
     let copy = all.study.methods[0].clone();
     // Another name for the same recipe.
     all.study.methods[1].recipe = copy.recipe;
-    let objects = candidates(&all.inputs());
+    let objects = candidates(&all.inputs(), &[]);
     assert_eq!(objects[0].candidates.len(), 5);
 }

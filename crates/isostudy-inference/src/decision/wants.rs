@@ -8,7 +8,7 @@ use isostudy_design::{Method, MethodId};
 /// What somebody may want; times are in milliseconds, errors in edges of the object's cubes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Goal {
-    /// What people chose most: the mean score of preference.
+    /// What people like most: the largest worth.
     Preferred,
     /// The shortest time.
     Fastest,
@@ -204,7 +204,16 @@ impl Want {
         if of.candidates.len() < 2 || !self.among.is_strict() && ranked.len() < 2 {
             return None;
         }
+        // By worths the top of the scale knows who was shown to differ from it.
+        let most_liked = of.most_liked.as_ref().filter(|_| self.goal == Goal::Preferred);
+        if most_liked.is_some_and(|top| top.best != leader.id()) {
+            // Whoever is the most liked differs from a candidate in its look alone, and is none.
+            return None;
+        }
         let is_alike = |(other, value): &&(&Candidate<'a>, Estimate)| {
+            if let Some(top) = most_liked {
+                return top.best == other.id() || top.alike.contains(&other.id());
+            }
             let in_pairs = (self.pairs)(leader).zip((self.pairs)(other)).and_then(|(a, b)| a.may_equal(b));
             in_pairs.unwrap_or_else(|| value.meets(least))
         };

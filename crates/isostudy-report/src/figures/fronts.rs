@@ -92,7 +92,7 @@ fn panel(study: &Study, object: &str, front: &Front) -> Scatter {
     let [x_label, y_label] = match front.axes {
         Axes::TimeError => ["ms from field to mesh", "mean error, cube edges"],
         Axes::TrianglesError => ["triangles", "mean error, cube edges"],
-        Axes::TimePreference => ["ms from field to mesh", "mean score"],
+        Axes::TimePreference => ["ms from field to mesh", "worth"],
     };
     // A step: between two methods nothing was measured.
     let mut steps = Vec::new();

@@ -60,12 +60,7 @@ fn every_figure_is_there_and_sound() {
         ("aspect_ratio_distributions", vec!["longest / shortest edge", "published ratio", "1.5"]),
         (
             "fronts",
-            vec![
-                "sphere: time and error",
-                "bunny: time and preference",
-                "ms from field to mesh",
-                "mean score",
-            ],
+            vec!["sphere: time and error", "bunny: time and preference", "ms from field to mesh", "worth"],
         ),
         ("contrasts", vec!["The body-centred lattice over the simple cubic lattice", "44:5:5", "84:22:56"]),
         ("answers", vec!["Q1", "Q27", "as_sp", "left of the row preferred", "18"]),

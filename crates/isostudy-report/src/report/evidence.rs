@@ -3,6 +3,7 @@
 use super::asked;
 use isostudy_design::Study;
 use isostudy_inference::ballots::BallotGroup;
+use isostudy_inference::conclusions::{Conclusion, Limit};
 use isostudy_inference::glance::Row;
 use isostudy_inference::hypotheses::{Hypothesis, Rules};
 use isostudy_inference::inputs::Inputs;
@@ -107,6 +108,12 @@ impl<'a> Evidence<'a> {
     /// Whether the probes found that people favour a side.
     pub(super) fn is_side_favoured(&self) -> bool {
         self.preferences.is_some_and(Preferences::is_side_favoured)
+    }
+
+    /// Whether repeats show pairs in both orders where comparisons do not.
+    pub(super) fn are_repeats_exchanged(&self) -> bool {
+        let limited = |of: &Conclusion| of.limits.contains(&Limit::OnlyRepeatsExchange);
+        self.preferences.is_some_and(|of| of.conclusions.all.iter().any(limited))
     }
 
     /// What decides conclusions.

@@ -66,6 +66,17 @@ impl Finding {
                 );
                 Self::new(Standing::Open, text)
             }
+            Conclusion::HiddenBySide => {
+                let text = format!(
+                    "{} and {second}{scope} average out within the margin of {margin}: {}. {}; {}; {tested}. People favour a \
+                     side, and who answers by the side hides what is preferred. So that does not say that they are liked alike.",
+                    opening(first),
+                    against(counts),
+                    self::score(test, true),
+                    equivalence(hypothesis)
+                );
+                Self::new(Standing::Open, text)
+            }
             Conclusion::NobodyLeans => {
                 let text = format!(
                     "{} against {second}{scope}: nobody leans either way ({}), so no test has anything to work on.",

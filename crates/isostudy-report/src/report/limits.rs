@@ -33,6 +33,10 @@ pub(super) fn all(evidence: &Evidence<'_>) -> Vec<String> {
     };
     let side = match (evidence.sides_recorded, sides_are_confounded(evidence)) {
         (false, _) => "Sides: the source files do not say which item stood on which side.",
+        (true, true) if evidence.are_repeats_exchanged() => {
+            "Sides: only repeats show pairs in both orders. A liking for a side can be told from them, and each result is about a method \
+             together with its side."
+        }
         (true, true) => {
             "Sides: no pair was shown in both orders. So each result is about a method together with its side."
         }
@@ -64,7 +68,14 @@ pub(super) fn short(evidence: &Evidence<'_>) -> String {
         parts.push("Nothing is said about preference.".to_owned());
     } else if sides_are_confounded(evidence) {
         parts.push(
-            "No pair was shown with its sides exchanged, so a preference may be one for a side.".to_owned(),
+            match evidence.are_repeats_exchanged() {
+                true => {
+                    "Only repeats show pairs with their sides exchanged. They tell a liking for a side, not how much of a \
+                     preference it makes."
+                }
+                false => "No pair was shown with its sides exchanged, so a preference may be one for a side.",
+            }
+            .to_owned(),
         );
     }
     if !evidence.shown.is_empty() && !evidence.screens_recorded {

@@ -1,23 +1,24 @@
 //! What predicts preference, what 27 pairs can show of it, and what they cannot.
 
 use crate::statement::{Block, Finding, Standing};
-use crate::words::{capital, counted, interval, list, number, p, percent, percents};
+use crate::words::{capital, counted, interval, list, number, p, percent, percents, whole};
 use isostudy_design::Study;
 use isostudy_design::forms::Questionnaire;
-use isostudy_inference::hypotheses::ALPHA;
-use isostudy_inference::prediction::{HeldOut, MetricPrediction, Prediction};
+use isostudy_inference::hypotheses::Rules;
+use isostudy_inference::prediction::{MetricPrediction, Prediction};
 
 pub(super) fn findings(study: &Study, prediction: Option<&Prediction>) -> Vec<Block> {
     let Some(prediction) = prediction else { return Vec::new() };
+    let level = Rules::of(&study.file.analysis).level;
     let mut found: Vec<Finding> =
-        prediction.metrics.iter().map(|m| metric(m, prediction.metrics.len())).collect();
-    found.extend(held_out(study, prediction));
+        prediction.metrics.iter().map(|m| metric(m, prediction.metrics.len(), level)).collect();
+    found.extend(held_out(study, prediction, level));
     found.extend(together(prediction));
     found.push(limits(study, prediction));
     found.into_iter().map(Block::Finding).collect()
 }
 
-fn metric(found: &MetricPrediction, family: usize) -> Finding {
+fn metric(found: &MetricPrediction, family: usize, level: f64) -> Finding {
     let (name, better) = (found.metric.label, &found.better);
     let Some(share) = better.share else {
         let text = format!("{}: nobody decided between a better and a worse value.", capital(name));
@@ -33,11 +34,17 @@ fn metric(found: &MetricPrediction, family: usize) -> Finding {
         format!(", 95 % t interval {}, {}", percents(i), counted(better.test.participants(), "participant"))
     });
     let toward = better.test.mean >= 0.0;
-    let (standing, verdict) = match (found.adjusted <= ALPHA, toward) {
+    let is_of_people = found.adjusted <= level;
+    let (standing, verdict) = match (found.holds(level), toward) {
         (true, true) => (Standing::Holds, "goes with preference"),
         (true, false) => (Standing::Holds, "goes against preference"),
+        (false, _) if is_of_people => (
+            Standing::Open,
+            "agrees with these people's choices, which is not shown to be more than chance among these methods",
+        ),
         (false, _) => (Standing::Open, "is not shown to go with preference"),
     };
+    let relabelled = relabelled(found, family);
     let pairs = better.pairs;
     let drawn = if pairs.drawn > 0 { format!(" ({} drawn)", pairs.drawn) } else { String::new() };
     let odds = found.coefficient.as_ref().map_or_else(
@@ -53,7 +60,7 @@ fn metric(found: &MetricPrediction, family: usize) -> Finding {
     );
     let text = format!(
         "{} {verdict} ({} taken as better): the better value was chosen in {} of {} decided answers ({}{people}; exact sign-flip \
-         test, {flip}{correction}), and won {} of {} decided pairs{drawn}. {odds}",
+         test, {flip}{correction}), and won {} of {} decided pairs{drawn}.{relabelled} {odds}",
         capital(name),
         found.metric.better,
         number(share.hits, 0),
@@ -65,8 +72,25 @@ fn metric(found: &MetricPrediction, family: usize) -> Finding {
     Finding::new(standing, text)
 }
 
+/// What exchanging the methods' values says.
+fn relabelled(found: &MetricPrediction, family: usize) -> String {
+    let Some(of) = found.relabelled else {
+        return " With two methods nobody can tell whether another metric would do as well.".into();
+    };
+    let correction =
+        if family > 1 { format!(", {} after Holm's correction", p(of.adjusted)) } else { String::new() };
+    let orders = if of.is_exact { "all" } else { "the drawn" };
+    format!(
+        " Of {orders} {} ways to give the metric's values to the methods, {} % agree with the answers as well as the true one \
+         ({}{correction}).",
+        whole(of.orders as u64),
+        number(100.0 * of.p, 1),
+        p(of.p)
+    )
+}
+
 /// How well each object is foretold from the others, against the constant and against the side.
-fn held_out(study: &Study, prediction: &Prediction) -> Vec<Finding> {
+fn held_out(study: &Study, prediction: &Prediction, level: f64) -> Vec<Finding> {
     let mut found = Vec::new();
     let names: Vec<&str> = study.file.objects.iter().map(|o| o.name.as_str()).collect();
     let judged: Vec<_> = prediction.metrics.iter().filter_map(|m| Some((m, m.held_out.as_ref()?))).collect();
@@ -79,11 +103,10 @@ fn held_out(study: &Study, prediction: &Prediction) -> Vec<Finding> {
             format!("{} of {of} on the {}", number(*hits, 1).trim_end_matches(".0"), names[*o])
         })
         .collect();
-    let gain = best
-        .gain_p
-        .map_or(String::new(), |gain| format!(" (one-sided t test over participants, {})", p(gain)));
-    let is_better = |held_out: &HeldOut| held_out.gain_p.is_some_and(|p| p <= ALPHA / 2.0);
-    let better = is_better(best);
+    let gain = metric.gain_adjusted.map_or(String::new(), |gain| {
+        format!(" (one-sided t test over participants, {} after Holm's correction for the metrics)", p(gain))
+    });
+    let better = metric.foretells(level);
     let text = format!(
         "Fitted to the other objects, {} foretells an object's answers {}: {} of the decided ones right, {}; mean log loss {} \
          against {} of a constant{gain}.",
@@ -100,9 +123,12 @@ fn held_out(study: &Study, prediction: &Prediction) -> Vec<Finding> {
     );
     found.push(Finding::new(if better { Standing::Holds } else { Standing::Open }, text));
     let failing: Vec<&str> =
-        judged.iter().filter(|(_, h)| !is_better(h)).map(|(m, _)| m.metric.label).collect();
+        judged.iter().filter(|(m, _)| !m.foretells(level)).map(|(m, _)| m.metric.label).collect();
     if !failing.is_empty() {
-        let text = format!("Not better than guessing on objects left out, by log loss: {}.", list(&failing));
+        let text = format!(
+            "Not shown to foretell objects left out better than guessing does, among other methods too: {}.",
+            list(&failing)
+        );
         found.push(Finding::new(Standing::Open, text));
     }
     if let Some(joint) = &prediction.joint_held_out {
@@ -179,7 +205,7 @@ fn limits(study: &Study, prediction: &Prediction) -> Finding {
         })
         .collect();
     let text = format!(
-        "{} of {} from {} are no large sample: only {} of their differences do not follow from the others, and {}. The intervals are about other people before these pairs, not about other meshes. The better value stood \
+        "{} of {} from {} are no large sample: only {} of their differences do not follow from the others, and {}. Intervals and sign-flip tests are about other people before these pairs. The test over methods is about other methods on these objects. No number here is about other objects. The better value stood \
          on the right in {}, so a leaning to one side would {}look like a metric.",
         capital(&counted(prediction.pairs, "pair")),
         counted(prediction.meshes, "mesh").replace("meshs", "meshes"),

@@ -9,8 +9,8 @@ use crate::words::{against, capital, counted, list, number, p};
 use isostudy_design::Level;
 use isostudy_design::Study;
 use isostudy_design::contrast::{Over, contrasts};
-use isostudy_inference::hypotheses::{self, Conclusion, Hypothesis, On, Target};
-use isostudy_inference::omnibus::{self, Asked, Omnibus};
+use isostudy_inference::hypotheses::{self, Conclusion, Dependence, Hypothesis, On, Target};
+use isostudy_inference::omnibus::{Asked, Omnibus};
 use isostudy_statistics::ScoreTest;
 
 /// So many comparisons that too few people lean on are told one by one, more of them together.
@@ -168,17 +168,8 @@ fn preference(
     scope: &str,
 ) -> Finding {
     let mut finding = Finding::of_preference(hypothesis, first, second, scope);
-    match finding.standing {
-        Standing::Holds => finding.text.push_str(&tipping::sentence(evidence, hypothesis)),
-        Standing::Equal if evidence.is_side_favoured() => {
-            finding.standing = Standing::Open;
-            finding.text = finding.text.replace(" are liked alike, within", " average out within");
-            finding.text.push_str(
-                " People favour a side, and who answers by the side hides what is preferred. So that does not say that they \
-                 are liked alike.",
-            );
-        }
-        _ => {}
+    if finding.standing == Standing::Holds {
+        finding.text.push_str(&tipping::sentence(evidence, hypothesis));
     }
     finding
 }
@@ -191,15 +182,13 @@ fn contrasts_of<'a>(evidence: &'a Evidence<'_>) -> impl Iterator<Item = (&'a Hyp
 /// What shows that a preference depends on the object, in words; `None` if nothing does.
 pub(super) fn depends_on_object(evidence: &Evidence<'_>, levels: [Level; 2]) -> Option<String> {
     let level = evidence.rules().level;
-    if let Some(of) = omnibus::depends_on_object(evidence.omnibus, levels, level) {
-        return Some(format!("Friedman's test over objects, {} after Holm's correction", p(of.adjusted)));
-    }
-    let pairs = contrasts_of(evidence).filter(|(h, l, over)| {
-        matches!(over, Over::ObjectDifference(..)) && *l == levels && h.adjusted <= level
-    });
-    let clearest =
-        pairs.min_by(|(a, ..), (b, ..)| a.test.sign_flip.ln_p.total_cmp(&b.test.sign_flip.ln_p))?;
-    Some(tested(clearest.0))
+    let found = hypotheses::depends_on_object(evidence.hypotheses, evidence.omnibus, levels, level)?;
+    Some(match found {
+        Dependence::Omnibus(of) => {
+            format!("Friedman's test over objects, {} after Holm's correction", p(of.adjusted))
+        }
+        Dependence::Difference(of) => tested(of),
+    })
 }
 
 /// What is said of all objects together where a preference depends on the object.

@@ -2,37 +2,35 @@
 //! to do next.
 
 use super::evidence::Evidence;
-use super::{SummaryLine, asked, limits, preference};
+use super::told::{self, named};
+use super::{SummaryLine, asked, limits};
 use crate::statement::Standing;
 use crate::wants;
-use crate::words::{capital, counted, list, number, percent};
-use isostudy_design::contrast::Over;
+use crate::words::{capital, counted, list, number};
 use isostudy_design::record::Purpose;
-use isostudy_design::{Factor, Method, MethodId, Study};
+use isostudy_design::{Factor, Method, Study};
 use isostudy_inference::decision::Goal;
 use isostudy_inference::glance::Row;
-use isostudy_inference::hypotheses;
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
-use isostudy_inference::preference::{group_factors, showings_won, two_factors};
-use isostudy_inference::results::{Decision, Results};
-
-/// Names in one line at most; the tables have all.
-const NAMED: usize = 6;
+use isostudy_inference::preference::two_factors;
+use isostudy_inference::results::Results;
 
 /// `inputs` are those of a study.
 pub(super) fn lines(evidence: &Evidence<'_>, results: Option<&Results<'_>>) -> Vec<SummaryLine> {
     let (rows, inputs) = (evidence.contrasts, results.map(|of| &of.inputs));
-    let of_meshes = match results.map(|of| best(&of.decision)) {
+    let of_meshes = match results.map(best) {
         Some(best) if evidence.shown.is_empty() && !best.is_empty() => best,
         _ => inputs.and_then(regular).into_iter().collect(),
     };
-    let found: Vec<String> = found(evidence, rows, inputs).into_iter().chain(of_meshes).collect();
+    let answers = evidence.preferences.map_or_else(Vec::new, |of| told::sentences(of, results));
+    let found: Vec<String> = answers.into_iter().chain(of_meshes).collect();
     let lines = [
         ("Compared", Some(compared(evidence))),
         ("By whom", Some(people(evidence))),
         ("Found", (!found.is_empty()).then(|| found.join(" "))),
         ("How sure", sure(evidence)),
+        ("Times", inputs.and_then(wants::busy)),
         ("Limits", Some(limits::short(evidence))),
         ("Next", Some(next(evidence, rows))),
     ];
@@ -72,15 +70,6 @@ fn which(study: &Study) -> String {
     named(&labels)
 }
 
-/// Some of the names, and how many more there are.
-fn named(names: &[&str]) -> String {
-    if names.len() <= NAMED {
-        return list(names);
-    }
-    let more = format!("{} more", names.len() - NAMED);
-    list(&names[..NAMED].iter().copied().chain([more.as_str()]).collect::<Vec<_>>())
-}
-
 fn people(evidence: &Evidence<'_>) -> String {
     let answers = evidence.shown.len();
     if answers == 0 {
@@ -99,56 +88,9 @@ fn people(evidence: &Evidence<'_>) -> String {
     text
 }
 
-/// The preferences over all answers that hold, and who wins most of its showings.
-fn found(evidence: &Evidence<'_>, rows: &[Row], inputs: Option<&Inputs<'_>>) -> Option<String> {
-    if evidence.shown.is_empty() {
-        return None;
-    }
-    let whole = |row: &&Row| !row.is_difference && (row.place.is_empty() || row.place.starts_with("group "));
-    let holding: Vec<&Row> =
-        rows.iter().filter(whole).filter(|row| row.standing == Standing::Holds).collect();
-    let mut text = match holding.len() {
-        0 => "No preference over all answers holds.".to_owned(),
-        _ => {
-            let names: Vec<String> =
-                holding.iter().map(|row| format!("{} ({})", row.pair, percent(row.share))).collect();
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            format!("People preferred {}.", named(&names))
-        }
-    };
-    if let Some(study) = evidence.study {
-        let depends: Vec<String> = hypotheses::contrasts_of(evidence.hypotheses)
-            .filter(|(_, levels, over)| {
-                *over == Over::All && preference::depends_on_object(evidence, *levels).is_some()
-            })
-            .map(|(_, levels, _)| {
-                let [first, second] = levels.map(|level| study.level(level).phrase.as_str());
-                format!("{first} against {second}")
-            })
-            .collect();
-        if !depends.is_empty() {
-            let depends: Vec<&str> = depends.iter().map(String::as_str).collect();
-            text.push_str(&format!(" This depends on the object: {}.", named(&depends)));
-        }
-    }
-    text.extend(inputs.and_then(favourite));
-    Some(text)
-}
-
-/// The method that was chosen in the largest share of the answers that showed it.
-fn favourite(inputs: &Inputs<'_>) -> Option<String> {
-    let (study, tally) = (inputs.study, &inputs.answers?.tally);
-    let factors = group_factors(study, tally, |_| true);
-    let mut shares: Vec<(f64, MethodId)> =
-        showings_won(study, &factors).into_iter().map(|(method, share)| (share.value(), method)).collect();
-    shares.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let [(first, method), (second, _), ..] = shares[..] else { return None };
-    let label = capital(&study.method(method).label);
-    (first > second).then(|| format!(" {label} was chosen most: in {} of its showings.", percent(first)))
-}
-
 /// Who is the best at what most want of a mesh, a sentence a want.
-fn best(Decision { objects, picks, .. }: &Decision<'_>) -> Vec<String> {
+fn best(results: &Results<'_>) -> Vec<String> {
+    let (objects, picks) = (&results.decision.objects, wants::judged(results));
     const WANTS: [Goal; 4] = [Goal::Fastest, Goal::Closest, Goal::SharpEdges, Goal::Regular];
     let sentence = |goal: &Goal| {
         let own: Vec<_> = picks.iter().filter(|pick| pick.want.goal == *goal).collect();
@@ -156,16 +98,21 @@ fn best(Decision { objects, picks, .. }: &Decision<'_>) -> Vec<String> {
         let each = own.iter().map(|pick| {
             let on: Vec<&str> = pick.on.iter().map(|best| best.object.name.as_str()).collect();
             let on = if is_everywhere { "every object".into() } else { list(&on) };
-            format!("{} on {on}", pick.method.label)
+            // A tie has no winner.
+            let mut tied: Vec<String> =
+                pick.on.iter().flat_map(|best| &best.alike).map(ToString::to_string).collect();
+            tied.sort_unstable();
+            tied.dedup();
+            let is_everywhere_tied = pick.on.iter().all(|best| best.alike == pick.on[0].alike);
+            let some = if is_everywhere_tied { "" } else { "on some of these " };
+            match tied.len() {
+                0 => format!("{} on {on}", pick.method.label),
+                _ => format!("{} on {on}, {some}not distinguished from {}", pick.method.label, named(&tied)),
+            }
         });
         Some(format!("{}: {}.", capital(wants::words(*goal).heading), each.collect::<Vec<_>>().join("; ")))
     };
-    let mut found: Vec<String> = WANTS.iter().filter_map(sentence).collect();
-    let told = picks.iter().filter(|pick| WANTS.contains(&pick.want.goal));
-    if told.flat_map(|pick| &pick.on).any(|best| !best.alike.is_empty()) {
-        found.push("From some of these others are not told apart: the first table marks them.".into());
-    }
-    found
+    WANTS.iter().filter_map(sentence).collect()
 }
 
 /// The method whose triangles are the most regular, over all objects.
@@ -213,6 +160,12 @@ fn next(evidence: &Evidence<'_>, rows: &[Row]) -> String {
         rows.iter().filter(|row| matches!(row.standing, Standing::Open | Standing::TooFew)).count();
     if evidence.shown.is_empty() {
         return "Ask people: isostudy design power says how many, and isostudy bundle makes what they see."
+            .into();
+    }
+    // More answers of people who answer by the side would not help.
+    if evidence.is_side_favoured() {
+        return "Find out why people answer by the side before you ask more of them: look at the page, the instruction and the \
+                people who broke a rule."
             .into();
     }
     if limits::sides_are_confounded(evidence) {

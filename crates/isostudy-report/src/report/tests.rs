@@ -1,6 +1,6 @@
 use super::*;
 use crate::fixture;
-use isostudy_inference::{Answered, BallotGroup, Inputs, audit, hypotheses};
+use isostudy_inference::{Answered, BallotGroup, Inputs, hypotheses};
 use isostudy_responses::{Answer, Choice, Question, Responses};
 use isostudy_statistics::Outcome::{self, Left, Right, Tie};
 use isostudy_statistics::ShownBallot;
@@ -57,8 +57,8 @@ fn choice(outcome: Outcome) -> Choice {
     }
 }
 
-/// The report of these groups' answers, which are about one object; `change` is done to what they say.
-fn report_with(title: &str, groups: &[BallotGroup], change: impl Fn(&mut Preferences<'_>)) -> Report {
+/// The report of these groups' answers, which are about one object.
+fn report_of(title: &str, groups: &[BallotGroup]) -> Report {
     let mut answers = Responses { sides_recorded: true, ..Responses::default() };
     for group in groups {
         answers.items.extend(group.items.iter().cloned());
@@ -72,13 +72,8 @@ fn report_with(title: &str, groups: &[BallotGroup], change: impl Fn(&mut Prefere
             answers.answers.push(Answer::new(person, question, sides, choice(ballot.outcome())));
         }
     }
-    let mut preferences = Preferences::without_study(&answers, groups, None);
-    change(&mut preferences);
+    let preferences = Preferences::without_study(&answers, groups, None);
     report_of_groups(title, &preferences, &[], &[])
-}
-
-fn report_of(title: &str, groups: &[BallotGroup]) -> Report {
-    report_with(title, groups, |_| ())
 }
 
 fn texts(report: &Report, id: &str) -> Vec<String> {
@@ -323,36 +318,30 @@ fn items_that_differ_by_rounding_stand_alike() {
 
 #[test]
 fn a_liking_for_a_side_is_no_equality() {
-    // Forty people take the left; ten of them are once undecided, so that somebody leans.
-    let mut answers = Vec::new();
-    for person in 0..40 {
-        for (question, (a, b)) in [(0, 1), (1, 0), (0, 1), (1, 0)].into_iter().enumerate() {
-            let chosen = if person % 4 == 0 && question == person / 4 % 4 { Tie } else { Left };
-            answers.push((person, a, b, chosen));
+    // Forty people give as many answers for the one as for the other; ten of them are once undecided, so that somebody leans. Some
+    // press what stands on the left, others choose twice by what is shown and twice against it.
+    let people = |chosen: [Outcome; 4]| {
+        let mut answers = Vec::new();
+        for person in 0..40 {
+            for (question, (a, b)) in [(0, 1), (1, 0), (0, 1), (1, 0)].into_iter().enumerate() {
+                let is_undecided = person % 4 == 0 && question == person / 4 % 4;
+                answers.push((person, a, b, if is_undecided { Tie } else { chosen[question] }));
+            }
         }
-    }
-    let groups = groups(&answers);
-    // As if no probe had looked.
-    let without = report_with("Trees", &groups, |of| of.audit.clear());
-    let without = texts(&without, "holds").join("\n");
-    assert!(without.contains("liked alike, within the margin"), "{without}");
-    let report = report_with("Trees", &groups, |of| of.audit = vec![a_side_was_found()]);
-    assert!(!texts(&report, "holds").join("\n").contains("liked alike"));
-    let open = texts(&report, "open").join("\n");
+        groups(&answers)
+    };
+    let of_items = report_of("Trees", &people([Left, Right, Right, Left]));
+    let holds = texts(&of_items, "holds").join("\n");
+    assert!(holds.contains("liked alike, within the margin"), "{holds}");
+    let of_sides = report_of("Trees", &people([Left; 4]));
+    assert!(!texts(&of_sides, "holds").join("\n").contains("liked alike"));
+    let open = texts(&of_sides, "open").join("\n");
     assert!(
         open.contains("average out within the margin") && open.contains("People favour a side"),
         "{open}"
     );
-}
-
-/// What the probe for a side says if it finds one.
-fn a_side_was_found() -> audit::Report {
-    audit::Report {
-        probe: audit::Probe::Side,
-        finding: audit::Finding::Found,
-        p: Some(0.001),
-        evidence: audit::Evidence::Side(audit::evidence::Pulls { pairs: None, controls: Some([20, 1, 2]) }),
-    }
+    let found = of_sides.summary.iter().find(|line| line.label == "Found").unwrap();
+    assert!(found.text.contains("People favour a side"), "{}", found.text);
 }
 
 #[test]

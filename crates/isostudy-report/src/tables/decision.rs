@@ -1,6 +1,6 @@
 //! Which method to take for what, and who is beaten in both time and error.
 
-use crate::wants::words;
+use crate::wants::{busy, judged, words};
 use crate::words::{list, whole};
 use isostudy_design::MethodId;
 use isostudy_inference::decision::{
@@ -12,19 +12,23 @@ use isostudy_table::digits::number;
 use isostudy_table::{Cell, Columns, Table};
 use isostudy_timing::stage_times::measured;
 
+/// Ties of more methods are counted; the next table names them.
+const TIED: usize = 4;
+
 /// A factor below which two are as good as each other.
 const MORE: f64 = 1.05;
 
 /// The picks and the fronts, where there is anything to choose from.
 pub(super) fn tables(results: &Results<'_>) -> Vec<Table> {
     let (inputs, found) = (&results.inputs, &results.decision);
-    let Decision { objects, picks, .. } = found;
+    let objects = &found.objects;
+    let picks = &judged(results)[..];
     let tables = [choices(inputs, objects, picks), decision(objects, picks), standings(found)];
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
 
 /// A row an object, a column a want: the best and its number.
-fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
+fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick<'_>]) -> Table {
     let mut wants: Vec<Goal> = Vec::new();
     for pick in picks {
         if !wants.contains(&pick.want.goal) {
@@ -37,8 +41,16 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[Pick<
         let Some((id, best)) = best.find(|(_, best)| best.object.id == object.object.id) else {
             return Cell::Missing;
         };
-        let sign = if best.alike.is_empty() { "" } else { " *" };
-        Cell::text(format!("{id}, {}{sign}", words(want).unit.replace("{}", &ranged(&[best.value.value]))))
+        // A tie has no winner.
+        let names = match best.alike.len() {
+            0 => id.to_string(),
+            n if n < TIED => {
+                let all: Vec<MethodId> = std::iter::once(id).chain(best.alike.iter().copied()).collect();
+                all.iter().map(MethodId::to_string).collect::<Vec<_>>().join(" = ")
+            }
+            n => format!("{id} = {} others", whole(n as u64)),
+        };
+        Cell::text(format!("{names}, {}", words(want).unit.replace("{}", &ranged(&[best.value.value]))))
     };
     let rows = objects.iter().filter(|_| !wants.is_empty());
     let mut table = Columns::over(rows)
@@ -48,16 +60,17 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[Pick<
         })
         .into_table("choices", "The best method for each object and purpose");
     table.notes.push(
-        "*: others are not told apart from it; the next table names them, and says what each choice costs. Empty: no method \
+        "a = b: the two are not distinguished, so neither is the winner. The next table says what each choice costs. Empty: no method \
          qualifies."
             .into(),
     );
+    table.notes.extend(busy(inputs));
     table.notes.push(conditions(inputs, objects));
     table
 }
 
 /// What one wants, what to take, why, and what it costs.
-fn decision(objects: &[ObjectCandidates<'_>], picks: &[Pick<'_>]) -> Table {
+fn decision(objects: &[ObjectCandidates<'_>], picks: &[&Pick<'_>]) -> Table {
     let on = |pick: &Pick<'_>| {
         let on: Vec<&str> = pick.on.iter().map(|best| best.object.name.as_str()).collect();
         if on.len() == objects.len() && on.len() > 1 { "every object".into() } else { list(&on) }
@@ -179,7 +192,8 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
     let is_liked = objects.iter().flat_map(|of| &of.candidates).any(|of| of.preference.is_some());
     if is_liked {
         text.push_str(
-            "Most liked: a person's score is answers for a method less answers against it, per answer that showed it, whatever was beside it. ",
+            "Most liked: the largest worth on one scale of this object's answers, with the side in the model where sides alternate. Others are not \
+             told apart from it where neither the scale nor a question about both shows a difference. ",
         );
     }
     text.push_str("Not compared: ");
@@ -221,8 +235,8 @@ fn standings<'a>(found: &'a Decision<'a>) -> Table {
         })
         .into_table("fronts", "Who is beaten in two quantities at once");
     table.with_note(
-        "First and second: time in seconds or triangles, then mean error in edges of the object's benchmark cubes, or mean score of preference \
-         from \u{2212}1 to 1, with intervals at 95 %. Beaten: another method is better in one and as good in the other, beyond both intervals. \
+        "First and second: time in seconds or triangles, then mean error in edges of the object's benchmark cubes, or worth in log-odds above the mean of all \
+         methods, with intervals at 95 %. Beaten: another method is better in one and as good in the other, beyond both intervals. \
          Perhaps beaten: by the estimates alone. A time's interval tells samples of one run apart, not runs.",
     )
 }

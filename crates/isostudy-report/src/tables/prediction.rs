@@ -34,6 +34,10 @@ fn metrics(prediction: &Prediction) -> Table {
         .column_in(&[0], "share_high", "to", |of| Cell::number(share(of).map(|i| i.high), 3))
         .column_in(&[0], "p_sign_flip", "p", |of| Cell::P(of.better.test.sign_flip.p(), 5))
         .column_in(&[0], "p_adjusted", "p adjusted", |of| Cell::P(of.adjusted, 4))
+        .column_in(&[0], "p_relabelled", "p over methods", |of| Cell::p(of.relabelled.map(|of| of.p), 4))
+        .column_in(&[0], "p_relabelled_adjusted", "adjusted", |of| {
+            Cell::p(of.relabelled.map(|of| of.adjusted), 4)
+        })
         .column_in(&[1], "pairs", "Pairs", |of| Cell::count(of.better.pair_count() as u64))
         .column_in(&[1], "pairs_won", "won by the better", |of| Cell::count(of.better.pairs.better as u64))
         .column_in(&[1], "pairs_drawn", "drawn", |of| Cell::count(of.better.pairs.drawn as u64))
@@ -63,15 +67,17 @@ fn metrics(prediction: &Prediction) -> Table {
         .column_in(&[2], "gain_p", "p of a gain", |of| {
             Cell::p(of.held_out.as_ref().and_then(|h| h.gain_p), 4)
         })
+        .column_in(&[2], "gain_p_adjusted", "adjusted", |of| Cell::p(of.gain_adjusted, 4))
         .into_blocks("prediction", caption, &["Answers", "Pairs", "Model"]);
     table.notes.push(
         "Metrics are of the meshes that were shown. Share of decided: answers for the side with the better value over all \
          answers but no preference; t interval at 95 % over participants. p: exact sign-flip test over participants, adjusted \
-         by Holm over the metrics. A pair is won by the side with more answers. Log-odds: \
+         by Holm over the metrics. p over methods: the share of all orders of the methods (9,999 drawn ones and the true one, of more than \
+         7) whose values agree with the answers as well as the true order, adjusted by Holm over the metrics. A pair is won by the side with more answers. Log-odds: \
          Davidson's model with the metric's difference for the worths, in units of the root mean square of the differences \
          (differences of ratios and angles, logarithms of quotients for the rest); standard error, t interval and p clustered \
          on participants. Left-out: each object predicted from a fit to the others; the constant knows the share of ties and \
-         no more; the gain is the mean fall in log loss, p one-sided by a t test over participants. Pairs won and accuracy have no interval: \
+         no more; the gain is the mean fall in log loss, p one-sided by a t test over participants, adjusted by Holm over the metrics. Pairs won and accuracy have no interval: \
          more people would fit better and win other pairs, and no interval tried covers what they would show. Intervals of shares are cut at 0 and 1."
             .into(),
     );

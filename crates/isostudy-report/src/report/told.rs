@@ -1,0 +1,229 @@
+//! Conclusions in sentences: what the abstract finds, and the last lines of `analyse`.
+
+use crate::words::{counted, interval, list, number, percent};
+use isostudy_design::Study;
+use isostudy_inference::conclusions::{About, Conclusion, Conclusions, Verdict, Why};
+use isostudy_inference::hypotheses::Target;
+use isostudy_inference::prediction::MetricPrediction;
+use isostudy_inference::{Preferences, Results};
+
+/// Names in one sentence at most; the tables have all.
+const NAMED: usize = 6;
+
+/// What was found, a sentence a kind of conclusion, the most telling first; empty without answers.
+pub(crate) fn sentences(preferences: &Preferences<'_>, results: Option<&Results<'_>>) -> Vec<String> {
+    if preferences.shown.is_empty() {
+        return Vec::new();
+    }
+    let told = Told { preferences, results };
+    let parts = [
+        told.contrasts(),
+        told.scale(),
+        told.objects(),
+        told.most_liked(),
+        told.side(),
+        told.spread(),
+        told.screening(),
+        told.prediction(),
+    ];
+    parts.into_iter().flatten().collect()
+}
+
+struct Told<'a, 'b> {
+    preferences: &'b Preferences<'a>,
+    results: Option<&'b Results<'a>>,
+}
+
+impl Told<'_, '_> {
+    fn conclusions(&self) -> &Conclusions {
+        self.results.map_or(&self.preferences.conclusions, |of| &of.conclusions)
+    }
+
+    fn all(&self) -> &[Conclusion] {
+        &self.conclusions().all
+    }
+
+    /// The contrasts over all answers: those that hold, those that are equal, or that there are none.
+    fn contrasts(&self) -> Option<String> {
+        let own: Vec<(&isostudy_inference::glance::Row, &Verdict)> = self
+            .all()
+            .iter()
+            .filter_map(|of| match of.about {
+                About::Contrast(place) => Some((&self.preferences.contrasts[place], &of.verdict)),
+                _ => None,
+            })
+            .collect();
+        if own.is_empty() {
+            return None;
+        }
+        let that = |wanted: fn(&Verdict) -> bool| own.iter().filter(move |(_, verdict)| wanted(verdict));
+        let holding: Vec<String> = that(|of| matches!(of, Verdict::Holds { .. }))
+            .map(|(row, _)| format!("{} ({})", row.pair, percent(row.share)))
+            .collect();
+        let equal: Vec<String> =
+            that(|of| *of == Verdict::Equal).map(|(row, _)| row.pair.replace(" over ", " and ")).collect();
+        let mut text = match holding.len() {
+            0 if that(|of| *of != Verdict::NotJudged(Why::TooFew)).next().is_none() => format!(
+                "No preference could be shown: {} gave {}, and no outcome of so few is significant.",
+                counted(self.people(), "person").replace("persons", "people"),
+                counted(self.preferences.shown.len(), "answer")
+            ),
+            0 if !equal.is_empty() => String::new(),
+            0 => "No preference over all answers was shown.".into(),
+            _ => format!("People preferred {}.", named(&holding)),
+        };
+        if !equal.is_empty() {
+            text.push_str(&format!(" People like alike, within the margin: {}.", named(&equal)));
+        }
+        Some(text.trim().to_owned())
+    }
+
+    fn people(&self) -> usize {
+        let people = self.preferences.shown.iter().map(|of| of.participant());
+        people.collect::<std::collections::BTreeSet<_>>().len()
+    }
+
+    /// The scale with the most items.
+    fn scale(&self) -> Option<String> {
+        let own = self.all().iter().filter_map(|of| match (of.about, &of.verdict) {
+            (About::Scale(place), Verdict::Holds { held, of }) => Some((place, *held, *of)),
+            _ => None,
+        });
+        let (place, held, of) = own.max_by_key(|&(_, _, of)| of)?;
+        let items = self.preferences.scales[place].group.items.len();
+        Some(format!("On one scale of {}, {held} of {of} differences hold.", counted(items, "item")))
+    }
+
+    fn objects(&self) -> Option<String> {
+        let study = self.preferences.study?;
+        let own = self.all().iter().filter_map(|of| match of.about {
+            About::Object(place) => Some(&self.preferences.hypotheses[place].target),
+            _ => None,
+        });
+        let names: Vec<String> = own.filter_map(|of| Some(between(study, of)?)).collect();
+        (!names.is_empty()).then(|| format!("This depends on the object: {}.", named(&names)))
+    }
+
+    /// Of a study over all objects and on each; else of the scale with the most answers.
+    fn most_liked(&self) -> Option<String> {
+        let Some(results) = self.results else {
+            let tops = self.all().iter().filter_map(|of| match of.about {
+                About::Top(place) => Some((self.preferences.scales[place].group, &of.verdict)),
+                _ => None,
+            });
+            let (_, verdict) = tops.max_by_key(|(group, _)| group.ballots.len())?;
+            return top(verdict, |name| name.to_owned()).map(|text| format!("Most liked: {text}."));
+        };
+        let study = results.inputs.study;
+        let mut parts: Vec<(String, String)> = Vec::new();
+        for of in self.all() {
+            let About::MostLiked(place) = of.about else { continue };
+            let Some(text) = top(&of.verdict, |id| label(study, id)) else { continue };
+            let on = match results.likings[place].object {
+                None => "over all objects".into(),
+                Some(object) => format!("on the {}", study.file.objects[object].name),
+            };
+            parts.push((on, text));
+        }
+        let (_, first) = parts.first()?;
+        if parts.iter().all(|(_, text)| text == first) {
+            return Some(format!("Most liked, on every object: {first}."));
+        }
+        let said: Vec<String> = parts.iter().map(|(on, text)| format!("{on}, {text}")).collect();
+        Some(format!("Most liked: {}.", said.join("; ")))
+    }
+
+    fn side(&self) -> Option<String> {
+        let found = self.conclusions().about(About::Side)?;
+        let text = "People favour a side. Whoever answers by the side hides what they prefer.";
+        matches!(found.verdict, Verdict::Holds { .. }).then(|| text.into())
+    }
+
+    fn people_differ(&self) -> bool {
+        let found = self.conclusions().about(About::People);
+        found.is_some_and(|of| matches!(of.verdict, Verdict::Holds { .. }))
+    }
+
+    fn spread(&self) -> Option<String> {
+        let spread = self.preferences.conclusions.spread.filter(|_| self.people_differ())?;
+        let scales = self.preferences.scales.iter().filter_map(|of| Some((of, of.scale.as_ref().ok()?)));
+        let (_, widest) = scales.max_by_key(|(of, _)| of.group.ballots.len())?;
+        let largest = widest.differences.iter().map(|of| of.log_odds.abs()).fold(0.0, f64::max);
+        let more =
+            if spread.sd > largest { " That is more than any two items differ by on average." } else { "" };
+        Some(format!(
+            "People differ in taste: the difference of two items has a standard deviation between people of {} log-odds ({}).{more}",
+            number(spread.sd, 1),
+            interval(spread.interval, 1)
+        ))
+    }
+
+    fn screening(&self) -> Option<String> {
+        let found = self.conclusions().about(About::Screening)?;
+        let any = self.preferences.screened.iter().find(|of| of.rule.is_none())?;
+        let Verdict::Holds { held, of } = found.verdict else { return None };
+        Some(format!(
+            "Without the {} who broke a rule of screening, {held} of {} {} out otherwise.",
+            counted(any.people.len(), "person").replace("persons", "people"),
+            counted(of, "contrast"),
+            if held == 1 { "comes" } else { "come" }
+        ))
+    }
+
+    fn prediction(&self) -> Option<String> {
+        let results = self.results?;
+        let metrics = &results.prediction.as_ref()?.metrics;
+        let own = self.all().iter().filter_map(|of| match of.about {
+            About::Prediction(place) => Some((&metrics[place], &of.verdict)),
+            _ => None,
+        });
+        let holding: Vec<&MetricPrediction> =
+            own.filter(|(_, verdict)| matches!(verdict, Verdict::Holds { .. })).map(|(of, _)| of).collect();
+        let way = |of: &&MetricPrediction| {
+            let way = if of.better.test.mean >= 0.0 {
+                of.metric.better.to_owned()
+            } else {
+                format!("not {}", of.metric.better)
+            };
+            format!("{} ({way} is preferred)", of.metric.label)
+        };
+        Some(match holding.len() {
+            0 => "No measure of the meshes was shown to go with preference among other methods.".into(),
+            _ => format!(
+                "These measures go with preference, before other people and among other methods: {}.",
+                named(&holding.iter().map(way).collect::<Vec<_>>())
+            ),
+        })
+    }
+}
+
+/// The best and who is not shown to differ; `None` where there is none.
+fn top(verdict: &Verdict, name: impl Fn(&str) -> String) -> Option<String> {
+    let Verdict::Best { best, tied, is_everybody } = verdict else { return None };
+    Some(match tied.len() {
+        0 => name(best),
+        _ if *is_everybody => "nobody, as none is shown to be liked less than the top of the scale".into(),
+        _ => format!("{}, not shown to differ from {}", name(best), named(tied)),
+    })
+}
+
+fn label(study: &Study, id: &str) -> String {
+    let method = study.methods.iter().find(|method| method.id.as_str() == id);
+    method.map_or_else(|| id.to_owned(), |method| format!("{id} ({})", method.label))
+}
+
+fn between(study: &Study, target: &Target) -> Option<String> {
+    let Target::Contrast { levels, .. } = target else { return None };
+    let [first, second] = levels.map(|level| study.level(level).phrase.as_str());
+    Some(format!("{first} against {second}"))
+}
+
+/// Some of the names, and how many more there are.
+pub(crate) fn named<T: AsRef<str>>(names: &[T]) -> String {
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    if names.len() <= NAMED {
+        return list(&names);
+    }
+    let more = format!("{} more", names.len() - NAMED);
+    list(&names[..NAMED].iter().copied().chain([more.as_str()]).collect::<Vec<_>>())
+}
