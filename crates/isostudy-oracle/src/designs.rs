@@ -136,6 +136,11 @@ pub(super) const PAIR: Design = Design {
 };
 
 impl Design {
+    /// Whether its groups are the paper's.
+    pub(super) fn has_papers_methods(&self) -> bool {
+        self.groups.len() == PAPER.len()
+    }
+
     /// The study, planned for so many participants.
     ///
     /// # Panics

@@ -70,6 +70,8 @@ pub mod fixture;
 #[cfg(test)]
 use isostudy_inference::{Answered, Inputs};
 #[cfg(test)]
+mod conclusions;
+#[cfg(test)]
 mod coverage;
 #[cfg(test)]
 mod tests;
