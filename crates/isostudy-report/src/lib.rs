@@ -39,7 +39,7 @@ pub use figures::{
 };
 pub use frames::{FrameError, LongFrame, answers_frame};
 pub use panel::{PANEL_SCHEMA, Panel, StageTime};
-pub use report::{Report, report, report_of_groups};
+pub use report::{Report, found, found_in_groups, report, report_of_groups};
 pub use self_test::self_test_tables;
 pub use tables::benchmark::of_objects as benchmark_of_objects;
 pub use tables::power::power_tables;

@@ -32,7 +32,7 @@ pub(crate) use bundle::forms_digest;
 use meshes::Isosurfaces;
 pub(crate) use meshes::Meshes;
 pub(crate) use stimuli::MadeWith;
-pub(crate) use tables::{write_answers_only, write_without_study};
+pub(crate) use tables::{Said, write_answers_only, write_without_study};
 pub(crate) use timings::{Choice, PlanLength};
 pub(crate) use web::Videos;
 pub(crate) use worker::{Invocation, measure};

@@ -2,16 +2,23 @@
 
 mod self_test;
 
+use super::given_answers::{answers_folder, csv};
 use super::reading_rules::ReadingRules;
+use super::study_forms::forms;
 use crate::outcome::Outcome;
 use crate::store::{self, Store};
 use crate::terminal::say;
 use crate::{answer_files, input, manifest, pipeline};
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use isostudy_design::Published;
+use isostudy_design::{Published, Study};
+use isostudy_serve::{deidentify, journal};
+use pipeline::Said;
 use self_test::SelfTest;
 use std::path::{Path, PathBuf};
+
+/// Rows of a table that is printed; of a longer one its file is named.
+const LONGEST: usize = 20;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -65,20 +72,53 @@ fn analyse(arguments: &Arguments) -> Result<()> {
         study.published = Published::default();
         study.responses.clone_from(&arguments.responses);
     }
+    let folder = answers_folder(&study, None);
+    if study.responses.is_none() {
+        study.responses = served(&study, &folder)?;
+    }
     study.file.responses = Some(arguments.reading.section(Some(&study))?);
-    let no_answers = || format!("{} names no responses; give --responses", input.display());
+    let no_answers = || {
+        let (file, folder) = (input.display(), folder.display());
+        format!(
+            "{file} names no responses, and {folder} has no answers of `isostudy serve`; give --responses"
+        )
+    };
     let reading = answer_files::of_study(&study)?.with_context(no_answers)?;
     answer_files::announce(&reading.report);
     let folder = || Path::new("results").join(format!("{}-answers", study.file.study.id));
     let out = arguments.out.clone().unwrap_or_else(folder);
     let store = Store::open(&out, false)?;
-    let tables = pipeline::write_answers_only(&study, reading, &store)?;
+    let said = pipeline::write_answers_only(&study, reading, &store)?;
     store.remove_retired()?;
     manifest::write(&manifest::Origin::of(&study)?, &store)?;
-    for table in tables.iter().filter(|table| table.name.starts_with("preference_")) {
-        say(&table.to_markdown())?;
+    print(&said, |name| name.starts_with("preference_"), &out)
+}
+
+/// The answers that `isostudy serve` kept, if there are any, as a file beside them.
+fn served(study: &Study, folder: &Path) -> Result<Option<PathBuf>> {
+    if !folder.join("answers.sqlite").is_file() {
+        return Ok(None);
     }
-    say(&out.display().to_string())
+    let (file, key, _) = forms(study)?;
+    let given = deidentify::deidentified(&journal::kept(folder, &file.study)?.given);
+    let path = folder.join("answers.csv");
+    store::write_whole(&path, csv(&given, &key)?.as_bytes())?;
+    tell!("answers of `isostudy serve`: {}", path.display());
+    Ok(Some(path))
+}
+
+/// The tables that are short, then what was found, and the file to open.
+fn print(said: &Said, is_told: impl Fn(&str) -> bool, out: &Path) -> Result<()> {
+    for table in said.tables.iter().filter(|table| is_told(&table.name)) {
+        match table.rows.len() {
+            0..=LONGEST => say(&table.to_markdown())?,
+            rows => {
+                say(&format!("{rows} rows: {}", out.join(format!("tables/{}.md", table.name)).display()))?
+            }
+        }
+    }
+    said.found.iter().try_for_each(|sentence| say(sentence))?;
+    say(&out.join("report.html").display().to_string())
 }
 
 fn analyse_without_study(arguments: &Arguments, path: &Path) -> Result<()> {
@@ -95,15 +135,12 @@ fn analyse_without_study(arguments: &Arguments, path: &Path) -> Result<()> {
     let folder = || Path::new("results").join(format!("{name}-answers"));
     let out = arguments.out.clone().unwrap_or_else(folder);
     let store = Store::open(&out, false)?;
-    let tables = pipeline::write_without_study(path, &section, &reading, &store)?;
+    let said = pipeline::write_without_study(path, &section, &reading, &store)?;
     store.remove_retired()?;
     let digest = store::sha256(&input::bytes(path)?);
     manifest::write(
         &manifest::Origin { name: &name, sha256: digest, seed: None, inputs: Default::default() },
         &store,
     )?;
-    for table in tables.iter().filter(|table| ["tests", "worths"].contains(&table.name.as_str())) {
-        say(&table.to_markdown())?;
-    }
-    say(&out.display().to_string())
+    print(&said, |name| ["tests", "worths"].contains(&name), &out)
 }

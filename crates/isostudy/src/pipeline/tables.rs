@@ -69,7 +69,7 @@ impl Pipeline<'_> {
 ///
 /// # Errors
 /// If the files cannot be written.
-pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store) -> Result<Vec<Table>> {
+pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store) -> Result<Said> {
     let answers = Answered::of(study, reading.responses);
     let inputs = isostudy_inference::Inputs {
         study,
@@ -79,17 +79,20 @@ pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store)
         answers: answers.as_ref(),
         left_out: &[],
     };
-    let mut made = None;
+    let results = Results::of(&inputs);
+    let paper = Paper::of(&results);
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;
-        let results = Results::of(&inputs);
-        made = Some(write(writer, &results, &Paper::of(&results), &[], false)?);
-        Ok(())
+        write(writer, &results, &paper, &[], false)
     })?;
-    Ok(made.unwrap_or_else(|| {
-        let results = Results::of(&inputs);
-        all_tables(&results, &Paper::of(&results))
-    }))
+    Ok(Said { tables: all_tables(&results, &paper), found: isostudy_report::found(&results) })
+}
+
+/// What a terminal is told of answers.
+pub(crate) struct Said {
+    pub(crate) tables: Vec<Table>,
+    /// What was found, a sentence each.
+    pub(crate) found: Vec<String>,
 }
 
 /// Tables, figures and report of answers without a study, into a folder of their own, with how the answers were read.
@@ -101,7 +104,7 @@ pub(crate) fn write_without_study(
     section: &ResponsesSection,
     reading: &Reading,
     store: &Store,
-) -> Result<Vec<Table>> {
+) -> Result<Said> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
     let inputs = Inputs::of_sources(source_digests::TABLES)
         .value("mapping", section)
@@ -127,7 +130,7 @@ pub(crate) fn write_without_study(
             false,
         )
     })?;
-    Ok(tables)
+    Ok(Said { found: isostudy_report::found_in_groups(&preferences), tables })
 }
 
 /// What the page needs to know of a table: `tables/contents.json` lists these.
@@ -158,14 +161,14 @@ pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
 pub(super) const ABSTRACT: &str = "tables/abstract.json";
 pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 
-/// The tables that were written. `gallery` says whether an `index.html` will stand beside the report.
+/// `gallery` says whether an `index.html` will stand beside the report.
 fn write(
     writer: &mut Writer<'_>,
     results: &Results<'_>,
     paper: &Paper<'_>,
     pictures: &[PictureData],
     gallery: bool,
-) -> Result<Vec<Table>> {
+) -> Result<()> {
     let tables = all_tables(results, paper);
     write_tables(writer, &tables)?;
     let figures = isostudy_report::figures(results).context("figures")?;
@@ -175,8 +178,7 @@ fn write(
     if gallery {
         writer.write_json(ABSTRACT, &Abstract::of(&report))?;
     }
-    write_frames(writer, &isostudy_report::frames(&results.inputs))?;
-    Ok(tables)
+    write_frames(writer, &isostudy_report::frames(&results.inputs))
 }
 
 /// The tables of a study, with those of the paper among them.
