@@ -18,8 +18,8 @@ pub(crate) fn sentences(preferences: &Preferences<'_>, results: Option<&Results<
     let told = Told { preferences, results };
     let parts = [
         told.contrasts(),
-        told.scale(),
         told.objects(),
+        told.scale(),
         told.most_liked(),
         told.side(),
         told.spread(),
