@@ -114,7 +114,9 @@ fn first_screen(out: &Path, known: &[Known], objects: &[&str]) {
         ("Sharp edges kept", "edges"),
         ("Most regular triangles", "regular"),
     ];
-    for (heading, want) in wants {
+    // Beside other work nothing is said of times, and that is said.
+    let is_busy = page.contains("Times decide nothing here");
+    for (heading, want) in wants.into_iter().filter(|(_, want)| !is_busy || *want != "fastest") {
         let mut places: Vec<(&str, Vec<&str>)> = Vec::new();
         for object in objects {
             let own = known.iter().filter(|of| of.object == *object && of.has_own_cubes);
@@ -124,16 +126,19 @@ fn first_screen(out: &Path, known: &[Known], objects: &[&str]) {
                 None => places.push((&best.method, vec![object])),
             }
         }
-        let each = places.iter().map(|(method, on)| {
+        let (_, said) = page.split_once(&format!("{heading}: ")).expect(heading);
+        let said = said.split(". ").next().unwrap();
+        for (method, on) in &places {
             let on = match on[..] {
                 [one] => one.to_owned(),
                 _ if on.len() == objects.len() => "every object".to_owned(),
                 _ => format!("{} and {}", on[..on.len() - 1].join(", "), on[on.len() - 1]),
             };
-            format!("{} on {on}", labels[*method])
-        });
-        let sentence = format!("{heading}: {}.", each.collect::<Vec<_>>().join("; "));
-        assert!(page.contains(&sentence), "{sentence}");
+            // Whom it is not distinguished from stands after it.
+            let named = format!("{} on {on}", labels[*method]);
+            assert!(said.contains(&named), "{heading}: {named}: {said}");
+        }
+        assert_eq!(said.split("; ").count(), places.len(), "{heading}: {said}");
     }
     let pictured = |method: &str| page.contains(&format!(r#"<img src="figures/method_{method}.png""#));
     for method in labels.keys() {
@@ -185,10 +190,15 @@ fn the_small_terrain_study_answers_from_its_own_numbers() {
 
     for row in rows(&out, "choices") {
         for want in ["fastest", "closest", "edges", "regular"] {
+            // Not where the run was measured beside other work, which the first screen says.
+            let Some(cell) = row.get(want) else {
+                assert_eq!(want, "fastest");
+                continue;
+            };
             let own = known.iter().filter(|of| of.object == row["object"] && of.has_own_cubes);
             let best = best(&own.collect::<Vec<_>>(), want);
-            let said = row[want].split(',').next().unwrap();
-            assert_eq!(said, best.method, "{}, {want}: {}", row["object"], row[want]);
+            let said = cell.split([',', ' ']).next().unwrap();
+            assert_eq!(said, best.method, "{}, {want}: {cell}", row["object"]);
         }
     }
 
@@ -260,11 +270,11 @@ fn liked(folder: &Folder, text: &str) {
     let run = folder.succeed(&["study", "study.toml", "--out", "out"]);
     assert!(!run.stderr.contains("meshes          120 of"), "nothing is extracted again: {}", run.stderr);
     let rows = rows(&folder.path("out"), "choices");
-    let said: Vec<&str> = rows.iter().map(|row| row["preferred"].as_str()).collect();
-    // Seen in three questions, chosen in each.
-    assert_eq!(said, ["nets-manifold, 1.0", "nets-manifold, 1.0", "nets-manifold, 1.0", "dc-in-cell, 1.0"]);
+    let said: Vec<&str> = rows.iter().map(|row| row["preferred"].split([',', ' ']).next().unwrap()).collect();
+    // Chosen by everybody in each question that shows them.
+    assert_eq!(said, ["nets-manifold", "nets-manifold", "nets-manifold", "dc-in-cell"]);
     let report = fs::read_to_string(folder.path("out/report.md")).unwrap();
-    assert!(report.contains("the look that people chose most"), "{report}");
+    assert!(report.contains("the look that people like most"), "{report}");
 }
 
 /// README and docs/terrain.md have the rows that were published, and no others.

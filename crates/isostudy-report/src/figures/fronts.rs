@@ -33,9 +33,9 @@ pub(super) fn draft(study: &Study, decision: &Decision<'_>) -> Option<Unfinished
             panel(study, object, front).draw(&mut canvas, (x, y), (x + width, y + ROW));
         }
     }
-    let mut caption: String = "Each method on each object, two quantities at a time; better is to the left, and down for error, up for preference. Nobody is \
-                   better in both than the methods on the line, whose codes stand beside them. Thin lines are intervals at 95 %. The \
-                   table of fronts has every value, and says who beats whom."
+    let mut caption: String = "Each method on each object, two quantities at a time; better is to the left, and down for error, up for preference. The line \
+                   joins the methods that no other method beats in both quantities. Their codes stand beside them. Thin lines are \
+                   intervals at 95 %. The table of fronts has every value, and says which method beats which."
         .into();
     if decision.objects.iter().any(ObjectCandidates::has_least_error) {
         caption.push_str(&format!(" A mean error below {LEAST_ERROR} is drawn there."));
@@ -60,7 +60,9 @@ fn panel(study: &Study, object: &str, front: &Front) -> Scatter {
     let unit = if front.axes == Axes::TrianglesError { 1.0 } else { 1e3 };
     let at = |point: &FrontPoint| (unit * point.at[0].value, point.at[1].value);
     let ends = |of: usize, unit: f64| {
-        let values = front.points.iter().flat_map(|point| [point.at[of].low, point.at[of].high]);
+        // A worth that nothing bounds has no ends, and is drawn all the same.
+        let of_point = |point: &FrontPoint| [point.at[of].value, point.at[of].low, point.at[of].high];
+        let values = front.points.iter().flat_map(of_point);
         let values = values.filter(|value| value.is_finite()).map(|value| unit * value);
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
     };
