@@ -138,9 +138,8 @@ impl Printed {
     /// Ids of methods that a sentence names as the top over all objects, and as not shown to differ from it.
     fn most_liked(&self) -> Option<(String, Vec<String>, bool)> {
         let text = self
-            .sentence("Most liked: over all objects, ")
-            .or_else(|| self.sentence("Most liked, on every object: "))?;
-        let text = text.split("; ").next()?;
+            .sentence("Most liked over all objects: ")
+            .or_else(|| self.sentence("Most liked on every object: "))?;
         if text.starts_with("nobody") {
             return Some((String::new(), Vec::new(), true));
         }
@@ -267,11 +266,17 @@ fn run(studies: u64) -> Tried {
                 let planted = planted(&study, truth, 36, seed);
                 let printed = printed(&study, &meshes, &planted.given);
                 let own = wrong(&study, truth, &planted, &printed);
-                faults
-                    .extend(own.into_iter().map(|of| format!("{} | {truth:?} | {seed} | {of}", design.name)));
+                let (mistaken, own): (Vec<_>, Vec<_>) =
+                    own.into_iter().partition(|of| of.starts_with(MISTAKEN));
+                let named = |of: String| format!("{} | {truth:?} | {seed} | {of}", design.name);
+                tried.faults.extend(own.into_iter().map(named));
+                if truth == Truth::Worths {
+                    tried.mistaken[0] += mistaken.len();
+                    tried.mistaken[1] += 1;
+                }
                 if truth == Truth::Drawn {
-                    metrics[0] += usize::from(says_a_metric_holds(&printed));
-                    metrics[1] += 1;
+                    tried.metrics[0] += usize::from(says_a_metric_holds(&printed));
+                    tried.metrics[1] += 1;
                 }
                 // Nine answers of a person tell little of what one likes.
                 if truth == Truth::Camps

@@ -304,7 +304,7 @@ fn the_papers_answers() {
     ), "{holds:#?}");
     let open = texts(&report, "open");
     assert!(open.contains(
-        &"Edge collapse and integrated clustering on the body-centred lattice cannot be told apart here: 15 answers against 22, \
+        &"Edge collapse and integrated clustering on the body-centred lattice cannot be distinguished here: 15 answers against 22, \
           17 without preference. Mean score \u{2212}0.13 (95 % t interval \u{2212}0.34 to 0.08, 18 participants); exact sign-flip \
           test, p = 0.27, p = 0.82 after Holm's correction for 9 tests. Not significant is not equal: a mean score of up to 0.08 \
           for the one or 0.34 for the other remains possible. The preference depends on the object (Friedman's test over objects, \

@@ -184,13 +184,13 @@ fn lead(evidence: &Evidence<'_>) -> Vec<String> {
         evidence
             .study
             .and_then(|study| asked::instruction(study))
-            .map(|instruction| format!("What they were asked: {}", asked::ended(instruction))),
+            .map(|instruction| format!("They were asked this: {}", asked::ended(instruction))),
     );
     lead.extend(evidence.assumptions.iter().cloned());
     lead.push(
         format!(
             "One person's answers hang together, so the person is the unit of every test and interval here. A person's score \
-             is the answers for the one less the answers for the other, divided by the number of that person's answers: 1 is \
+             is the answers for the one less the answers for the other, divided by the number of that person's answers. 1 means \
              always the one, \u{2212}1 always the other. A result holds if its p, corrected for the tests of its family, is at \
              most {}.",
             evidence.rules().level

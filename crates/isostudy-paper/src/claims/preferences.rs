@@ -111,7 +111,9 @@ fn clustering(study: &Study, tally: &Tally) -> Option<Finding> {
     let lefts = study.comparisons.iter().filter_map(left_of_one_lattice);
     let side = match lefts.into_iter().any(|left| left == Clustering::Integrated) {
         true => "",
-        false => "integrated is never on the left, so a preference for the right side cannot be told apart",
+        false => {
+            "integrated is never on the left, so a preference for the right side cannot be distinguished"
+        }
     };
     let reason = format!(
         "no test published; {wins} answers for integrated, {none} none, {losses} for the other; {side}"

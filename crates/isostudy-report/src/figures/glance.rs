@@ -39,8 +39,9 @@ pub(super) fn contrasts(rows: &[glance::Row]) -> Option<Unfinished> {
         forest::draw(&mut canvas, &differences, &Axis::spanning(low, high), label, 0.0, top);
     }
     let caption = "All contrasts. Share: mean over people of their answers for the first, an answer without preference counting \
-                   half. On the right: answers for the first, for neither and for the second; people who lean to the first, to \
-                   neither and to the second; p of the exact sign-flip test, adjusted within its family. Below: by how much two \
+                   half. On the right stand three groups of numbers. The first: answers for the first, for neither and for the second. \
+                   The second: people who lean to the first, to neither and to the second. The third: p of the exact sign-flip test, adjusted \
+                   within its family. Below: by how much two \
                    such shares differ."
         .into();
     Some(Unfinished { name: "contrasts", caption, canvas })

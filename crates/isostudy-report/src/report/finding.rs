@@ -104,7 +104,7 @@ impl Finding {
                     false => "",
                 };
                 let text = format!(
-                    "{} and {second}{scope} cannot be told apart here: {}. {}; {tested}.{alone}{}",
+                    "{} and {second}{scope} cannot be distinguished here: {}. {}; {tested}.{alone}{}",
                     opening(first),
                     against(counts),
                     self::score(test, true),

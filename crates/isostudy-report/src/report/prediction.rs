@@ -169,7 +169,7 @@ fn together(prediction: &Prediction) -> Option<Finding> {
     let label = |i: usize| prediction.metrics[i].metric.label;
     let strong = pairs.iter().filter(|(r, ..)| r.abs() >= 0.7).count();
     let verdict = match strong {
-        0 => "The metrics can be told apart to some degree",
+        0 => "The metrics can be distinguished to some degree",
         _ => "Which of the metrics people react to cannot be told, since they rise and fall together",
     };
     let range = match pairs.len() {

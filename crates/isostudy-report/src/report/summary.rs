@@ -52,7 +52,7 @@ fn compared(evidence: &Evidence<'_>) -> String {
         1 => "1 method of isosurface extraction".into(),
         n => format!("{n} methods of isosurface extraction"),
     };
-    format!("{methods} on {on}: {}.", which(study))
+    format!("{methods} on {on}. They are {}.", which(study))
 }
 
 /// The methods in words: crossed factors by their levels, others by their labels.

@@ -135,7 +135,7 @@ fn no_effect_is_open_and_says_what_remains_possible() {
     let found = of(&said, "open", "The body-centred lattice and the simple cubic lattice cannot");
     assert_eq!(
         found.text,
-        "The body-centred lattice and the simple cubic lattice cannot be told apart here: 81 answers against 81, none without \
+        "The body-centred lattice and the simple cubic lattice cannot be distinguished here: 81 answers against 81, none without \
          preference. Mean score 0.00 (95 % t interval \u{2212}0.51 to 0.51, 18 participants); exact sign-flip test, p = 1, p = 1 \
          after Holm's correction for 4 tests. Not significant is not equal: a mean score of up to 0.51 for the one or 0.51 for \
          the other remains possible."

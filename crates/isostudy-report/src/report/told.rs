@@ -70,7 +70,7 @@ impl Told<'_, '_> {
             ),
             0 if !equal.is_empty() => String::new(),
             0 => "No preference over all answers was shown.".into(),
-            _ => format!("People preferred {}.", named(&holding)),
+            _ => in_sentences("People", &holding),
         };
         if !equal.is_empty() {
             text.push_str(&format!(" People like alike, within the margin: {}.", named(&equal)));
@@ -127,10 +127,10 @@ impl Told<'_, '_> {
         }
         let (_, first) = parts.first()?;
         if parts.iter().all(|(_, text)| text == first) {
-            return Some(format!("Most liked, on every object: {first}."));
+            return Some(format!("Most liked on every object: {first}."));
         }
-        let said: Vec<String> = parts.iter().map(|(on, text)| format!("{on}, {text}")).collect();
-        Some(format!("Most liked: {}.", said.join("; ")))
+        let said: Vec<String> = parts.iter().map(|(on, text)| format!("Most liked {on}: {text}.")).collect();
+        Some(said.join(" "))
     }
 
     fn side(&self) -> Option<String> {
@@ -195,6 +195,19 @@ impl Told<'_, '_> {
             ),
         })
     }
+}
+
+/// A sentence each, of so many as are named.
+fn in_sentences(who: &str, preferred: &[String]) -> String {
+    let mut text = String::new();
+    for (place, pair) in preferred.iter().take(NAMED).enumerate() {
+        let who = if place == 0 { who } else { " They" };
+        text.push_str(&format!("{who} preferred {pair}."));
+    }
+    if preferred.len() > NAMED {
+        text.push_str(&format!(" {} more preferences hold.", preferred.len() - NAMED));
+    }
+    text
 }
 
 /// The best and who is not shown to differ; `None` where there is none.

@@ -84,7 +84,7 @@ fn decision(objects: &[ObjectCandidates<'_>], picks: &[&Pick<'_>]) -> Table {
         .into_table("decision", "Which method to take");
     if !picks.is_empty() {
         table.notes.push(
-            "What it costs: beside the least of all methods with the object's own cubes. In the row \u{201c}as many triangles\u{201d} it is \
+            "The costs are beside the least of all methods with the object's own cubes. In the row \u{201c}as many triangles\u{201d} it is \
              beside the least of those."
                 .into(),
         );
@@ -112,10 +112,10 @@ fn why(pick: &Pick<'_>) -> String {
     let [everywhere, somewhere] = alike(pick);
     match (everywhere.is_empty(), somewhere.is_empty()) {
         (true, true) => {}
-        (false, true) => text.push_str(&format!(". Not told apart from {}", list(&everywhere))),
-        (true, false) => text.push_str(&format!(". On some not told apart from {}", list(&somewhere))),
+        (false, true) => text.push_str(&format!(". Not distinguished from {}", list(&everywhere))),
+        (true, false) => text.push_str(&format!(". On some not distinguished from {}", list(&somewhere))),
         (false, false) => text.push_str(&format!(
-            ". Not told apart from {}; on some, nor from {}",
+            ". Not distinguished from {}; on some, nor from {}",
             list(&everywhere),
             list(&somewhere)
         )),
@@ -179,9 +179,9 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
         "Mean error: mean distance from mesh to isosurface or back, whichever is larger, in edges of the object's benchmark cubes. Sharp \
          edges kept: mean distance from points of the object's sharp edges to the mesh, in that unit; where the object ends at walls, their \
          edges are among them. Each column takes the best in its quantity, whatever else it costs. Those with the \
-         object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. Not told apart: the intervals at 95 % meet; \
-         those of fewer than six times reach from the shortest to the longest. Of those not told apart, and within 5 % of \
-         the best, the one with the smallest mean error is named if time is wanted, the fastest if error is. ",
+         object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. Two methods are not distinguished if their intervals at 95 % meet. \
+         Intervals of fewer than six times reach from the shortest to the longest. Of those not distinguished, and within 5 % of the \
+         best, one stands first: the one with the smallest mean error for a time, the fastest for an error. ",
     );
     if objects.iter().any(ObjectCandidates::has_least_error) {
         text.push_str(&format!("A mean error below {LEAST_ERROR} counts as {LEAST_ERROR}. "));
@@ -193,7 +193,7 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
     if is_liked {
         text.push_str(
             "Most liked: the largest worth on one scale of this object's answers, with the side in the model where sides alternate. Others are not \
-             told apart from it where neither the scale nor a question about both shows a difference. ",
+             distinguished from it where neither the scale nor a question about both shows a difference. ",
         );
     }
     text.push_str("Not compared: ");
@@ -233,11 +233,11 @@ fn standings<'a>(found: &'a Decision<'a>) -> Table {
                 .column(format!("{name}_low"), "from", |row| end(row, |of| of.low))
                 .column(format!("{name}_high"), "to", |row| end(row, |of| of.high))
         })
-        .into_table("fronts", "Who is beaten in two quantities at once");
+        .into_table("fronts", "Methods that another method beats in two quantities at once");
     table.with_note(
-        "First and second: time in seconds or triangles, then mean error in edges of the object's benchmark cubes, or worth in log-odds above the mean of all \
-         methods, with intervals at 95 %. Beaten: another method is better in one and as good in the other, beyond both intervals. \
-         Perhaps beaten: by the estimates alone. A time's interval tells samples of one run apart, not runs.",
+        "First: time in seconds, or triangles. Second: mean error in edges of the object's benchmark cubes, or worth in log-odds above the \
+         mean of all methods. Intervals are at 95 %. Beaten: another method is better in one and as good in the other, beyond both intervals. \
+         Perhaps beaten: by the estimates alone. A time's interval distinguishes samples of one run, not runs.",
     )
 }
 
