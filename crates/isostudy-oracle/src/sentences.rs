@@ -244,8 +244,7 @@ fn standing(of: &Hypothesis, finding: &Finding, row: &str, compared: &mut Compar
     let want: &[&str] = match conclusion {
         "too few" => &["too few"],
         "differs" | "differs, within the margin" => &["holds"],
-        // A liking for a side hides what is liked.
-        "equal within the margin" => &["equal", "open"],
+        "equal within the margin" => &["equal"],
         _ => &["open"],
     };
     let got = finding.standing.label();

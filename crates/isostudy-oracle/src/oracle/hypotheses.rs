@@ -6,7 +6,9 @@ use crate::exact::{
     Range, Ratio, add, benjamini_hochberg, binomial, common_divisor, equivalence, holm, interval, mean,
     minus, ratio, sign_flip, trinomial, value,
 };
-use std::collections::BTreeMap;
+use crate::people::Pressed;
+use isostudy_design::forms::Role;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// One hypothesis.
 #[derive(Debug, Clone)]
@@ -27,6 +29,8 @@ pub(crate) struct Hypothesis {
     equivalence: Option<f64>,
     /// Whether the preference was shown to depend on the object; `None` where rounding of p may decide.
     by_object: Option<bool>,
+    /// Whether people favour a side; `None` where that is not plain to see.
+    by_side: Option<bool>,
     /// Question by sign, and by which part of a difference.
     parts: Vec<BTreeMap<usize, i64>>,
 }
@@ -59,6 +63,7 @@ impl Hypothesis {
             _ if leaning == 0 => "nobody leans",
             _ if 2.0_f64.powi(1 - leaning as i32) > LEVEL => "too few",
             (false, true) if self.by_object? => "averages out",
+            (false, true) if self.by_side? => "hidden by a side",
             (true, false) => "differs",
             (true, true) => "differs, within the margin",
             (false, true) => "equal within the margin",
@@ -82,7 +87,36 @@ pub(crate) fn hypotheses(oracle: &Oracle<'_>) -> Vec<Hypothesis> {
     let mut single: Vec<Hypothesis> = (0..oracle.questions.len()).map(|q| of_question(oracle, q)).collect();
     correct(&mut single.iter_mut().collect::<Vec<_>>(), benjamini_hochberg);
     all.extend(single);
+    let by_side = is_side_favoured(oracle);
+    all.iter_mut().for_each(|of| of.by_side = by_side);
     all
+}
+
+/// Whether a side is favoured, where it is plain: everybody always took the same side of pairs that were shown in both orders; or answers
+/// fall about evenly on both; or no pair was shown in both orders.
+fn is_side_favoured(oracle: &Oracle<'_>) -> Option<bool> {
+    let mut lefts: BTreeMap<usize, BTreeSet<&str>> = BTreeMap::new();
+    for &(question, given) in oracle.comparisons.iter().flatten() {
+        lefts.entry(question).or_default().insert(given.left());
+    }
+    let alternate = lefts.values().any(|lefts| lefts.len() > 1);
+    let count = |pressed| oracle.given.iter().filter(|of| of.pressed == pressed).count() as f64;
+    let [left, right] = [Pressed::Left, Pressed::Right].map(count);
+    match left / (left + right) {
+        _ if !alternate && oracle.given.iter().all(|of| of.shown.role == Role::Comparison) => Some(false),
+        _ if left + right == 0.0 => Some(false),
+        share if alternate && (share == 0.0 || share == 1.0) => Some(true),
+        // Whoever decides between equals may do so by the side.
+        _ if oracle
+            .given
+            .iter()
+            .any(|of| of.shown.role == Role::Control && of.pressed != Pressed::Neither) =>
+        {
+            None
+        }
+        _ if (left - right).abs() <= 1.5 * (left + right).sqrt() => Some(false),
+        _ => None,
+    }
 }
 
 /// Whether Friedman's test over objects, or a pair of objects, shows that a preference depends on the object.
@@ -273,6 +307,7 @@ fn tested(
         over_all: None,
         equivalence: None,
         by_object: Some(false),
+        by_side: Some(false),
         family,
         scope,
         scores,
