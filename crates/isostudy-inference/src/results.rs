@@ -1,10 +1,11 @@
 //! Everything that is said of a study or of answers, computed once.
 
+pub mod conclusions;
+
 use crate::agreement::Agreement;
 use crate::answered::Answered;
 use crate::audit::{self, audit};
 use crate::ballots::{ALL_METHODS, BallotGroup};
-use crate::conclusions::Conclusions;
 use crate::decision::{Front, ObjectCandidates, Pick, candidates, fronts, picks};
 use crate::glance;
 use crate::hypotheses::{self, Hypothesis, Robustness, Rules};
@@ -21,6 +22,7 @@ use crate::screened::{self, Respondent, WithoutBreakers};
 use crate::screens::{self, Compared};
 use crate::sides::Sides;
 use crate::tipping::Undone;
+use conclusions::Conclusions;
 use isostudy_design::Study;
 use isostudy_responses::Responses;
 use isostudy_statistics::{DeclaredBallot, ShownBallot, screening_with};

@@ -100,7 +100,7 @@ impl Told<'_, '_> {
             About::Object(place) => Some(&self.preferences.hypotheses[place].target),
             _ => None,
         });
-        let names: Vec<String> = own.filter_map(|of| Some(between(study, of)?)).collect();
+        let names: Vec<String> = own.filter_map(|of| between(study, of)).collect();
         (!names.is_empty()).then(|| format!("This depends on the object: {}.", named(&names)))
     }
 

@@ -177,11 +177,11 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
     }
     text.push_str(
         "Mean error: mean distance from mesh to isosurface or back, whichever is larger, in edges of the object's benchmark cubes. Sharp \
-         edges kept: mean distance from points of the object's sharp edges to the mesh, in that unit; where the object ends at walls, their \
+         edges kept: mean distance from points of the object's sharp edges to the mesh, in that unit. Where the object ends at walls, their \
          edges are among them. Each column takes the best in its quantity, whatever else it costs. Those with the \
          object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. Two methods are not distinguished if their intervals at 95 % meet. \
          Intervals of fewer than six times reach from the shortest to the longest. Of those not distinguished, and within 5 % of the \
-         best, one stands first: the one with the smallest mean error for a time, the fastest for an error. ",
+         best, one stands first. For a time it is the one with the smallest mean error, for an error the fastest. ",
     );
     if objects.iter().any(ObjectCandidates::has_least_error) {
         text.push_str(&format!("A mean error below {LEAST_ERROR} counts as {LEAST_ERROR}. "));
