@@ -136,11 +136,6 @@ pub(super) const PAIR: Design = Design {
 };
 
 impl Design {
-    /// Whether its groups are the paper's.
-    pub(super) fn has_papers_methods(&self) -> bool {
-        self.groups.len() == PAPER.len()
-    }
-
     /// The study, planned for so many participants.
     ///
     /// # Panics
@@ -241,3 +236,11 @@ target = "any.toml"
 
 const OBJECT: &str = "isovalue = 0.0\nmin = [-1.0, -1.0, -1.0]\nmax = [1.0, 1.0, 1.0]\nbenchmark_spacing = 0.2\n\
     stimulus_spacing = 0.2\ncamera = { distance = 1.2, vertical_fov_rad = 1.0 }\n";
+
+#[cfg(test)]
+impl Design {
+    /// Whether its groups are the paper's.
+    pub(super) fn has_papers_methods(&self) -> bool {
+        self.groups.len() == PAPER.len()
+    }
+}
