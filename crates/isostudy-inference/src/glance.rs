@@ -3,8 +3,7 @@
 //! A contrast of two things is turned towards the one that more answers prefer over all objects, and so are its parts: rows
 //! of the same two things can be compared.
 
-use crate::hypotheses::{Conclusion, Hypothesis, On, Target};
-use crate::standing::Standing;
+use crate::hypotheses::{Hypothesis, On, Target};
 use isostudy_design::contrast::Over;
 use isostudy_design::{Level, Study};
 use isostudy_statistics::interval::Interval;
@@ -12,16 +11,16 @@ use isostudy_statistics::interval::Interval;
 /// One contrast.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// What is compared: `integrated clustering over no clustering`.
-    pub pair: String,
+    /// The hypothesis, by its place.
+    pub hypothesis: usize,
+    /// What is compared, the one that more answers prefer over all objects first: `integrated clustering`, `no clustering`.
+    pub things: [String; 2],
     /// Where, without a space before it; empty for all answers.
     pub place: String,
     /// Whether it is over all answers that compare the two.
     pub is_whole: bool,
     /// Whether it is the difference of two shares, not a share.
     pub is_difference: bool,
-    /// Its verdict.
-    pub standing: Standing,
     /// Answers for the first, without preference, for the second; a difference has none.
     pub answers: Option<[u64; 3]>,
     /// People who lean to the first, to neither, to the second.
@@ -36,10 +35,22 @@ pub struct Row {
 }
 
 impl Row {
+    /// What is compared: `integrated clustering over no clustering`.
+    pub fn pair(&self) -> String {
+        self.things.join(" over ")
+    }
+
+    /// Whether more answers prefer the second: a part may go against the whole.
+    pub fn is_against(&self) -> bool {
+        !self.is_difference && self.share < 0.5
+    }
+
     /// What is compared, and where.
     pub fn name(&self) -> String {
-        let name =
-            if self.place.is_empty() { self.pair.clone() } else { format!("{}, {}", self.pair, self.place) };
+        let name = match self.place.as_str() {
+            "" => self.pair(),
+            place => format!("{}, {place}", self.pair()),
+        };
         let mut letters = name.chars();
         letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
     }
@@ -47,9 +58,10 @@ impl Row {
 
 /// The contrasts that were tested, the pooled ones of two things first and their parts after them; differences last.
 pub fn rows(study: Option<&Study>, hypotheses: &[Hypothesis]) -> Vec<Row> {
-    let tested: Vec<&Hypothesis> = hypotheses.iter().filter(|h| h.is_tested() && !h.is_question()).collect();
+    let is_contrast = |(_, h): &(usize, &Hypothesis)| h.is_tested() && !h.is_question();
+    let tested: Vec<(usize, &Hypothesis)> = hypotheses.iter().enumerate().filter(is_contrast).collect();
     let mut pairs: Vec<(String, String)> = Vec::new();
-    for hypothesis in &tested {
+    for (_, hypothesis) in &tested {
         let key = key(hypothesis);
         if !pairs.contains(&key) {
             pairs.push(key);
@@ -58,11 +70,13 @@ pub fn rows(study: Option<&Study>, hypotheses: &[Hypothesis]) -> Vec<Row> {
     let mut rows = Vec::new();
     for differences in [false, true] {
         for pair in &pairs {
-            let own = || tested.iter().filter(|h| key(h) == *pair);
-            let turned = own().find(|h| !h.is_difference()).is_some_and(|whole| whole.test.mean < 0.0);
-            let mut parts: Vec<&&Hypothesis> = own().filter(|h| h.is_difference() == differences).collect();
-            parts.sort_by_key(|h| !is_whole(h));
-            rows.extend(parts.into_iter().filter_map(|hypothesis| row(study, hypothesis, turned)));
+            let own = || tested.iter().filter(|(_, h)| key(h) == *pair);
+            let turned =
+                own().find(|(_, h)| !h.is_difference()).is_some_and(|(_, whole)| whole.test.mean < 0.0);
+            let mut parts: Vec<&(usize, &Hypothesis)> =
+                own().filter(|(_, h)| h.is_difference() == differences).collect();
+            parts.sort_by_key(|(_, h)| !is_whole(h));
+            rows.extend(parts.into_iter().filter_map(|&(place, of)| row(study, place, of, turned)));
         }
     }
     rows
@@ -85,7 +99,7 @@ fn is_whole(hypothesis: &Hypothesis) -> bool {
     }
 }
 
-fn row(study: Option<&Study>, hypothesis: &Hypothesis, turned: bool) -> Option<Row> {
+fn row(study: Option<&Study>, number: usize, hypothesis: &Hypothesis, turned: bool) -> Option<Row> {
     let test = &hypothesis.test;
     let ([mut first, mut second], place) = match (&hypothesis.target, study) {
         (Target::Contrast { levels, over }, Some(study)) => {
@@ -119,11 +133,11 @@ fn row(study: Option<&Study>, hypothesis: &Hypothesis, turned: bool) -> Option<R
         if is_difference { score / 2.0 } else { (1.0 + score) / 2.0 }
     };
     Some(Row {
-        pair: format!("{first} over {second}"),
+        hypothesis: number,
+        things: [first, second],
         place,
         is_whole: is_whole(hypothesis),
         is_difference,
-        standing: standing(hypothesis.conclusion()),
         answers: answers.filter(|_| !is_difference),
         people,
         share: share(mean),
@@ -154,19 +168,6 @@ fn place(study: &Study, over: Over) -> String {
     }
 }
 
-fn standing(conclusion: Conclusion) -> Standing {
-    match conclusion {
-        Conclusion::Differs | Conclusion::DiffersWithinMargin => Standing::Holds,
-        Conclusion::Equal => Standing::Equal,
-        Conclusion::TooFew => Standing::TooFew,
-        Conclusion::Open
-        | Conclusion::AveragesOut
-        | Conclusion::HiddenBySide
-        | Conclusion::NobodyLeans
-        | Conclusion::NotTested => Standing::Open,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -188,10 +189,12 @@ mod tests {
         // One person is one observation, and all have as many answers.
         assert!((whole.share - (92.0 + 1.0) / 108.0).abs() < 1e-12);
         assert_eq!(whole.people.iter().sum::<u64>(), 18);
-        assert_eq!(whole.standing, Standing::Holds);
+        let answered = fixture::answered(&study);
+        assert!(answered.hypotheses[whole.hypothesis].differs());
         let part = of("Edge collapse over no clustering, on the bunny");
         assert_eq!(part.answers, Some([28, 0, 8]));
-        assert!(part.share > 0.5 && part.interval.unwrap().low > 0.5 && part.standing == Standing::Open);
+        assert!(part.share > 0.5 && part.interval.unwrap().low > 0.5);
+        assert!(!answered.hypotheses[part.hypothesis].differs());
         let against = of("The body-centred lattice over the simple cubic lattice, on the asteroid");
         assert_eq!(against.answers, Some([18, 9, 27]));
         assert!(against.share < 0.5 && against.interval.unwrap().high > 0.5);
@@ -218,8 +221,8 @@ mod tests {
         }
         let after = rows(Some(&study), &crate::Answered::of(&study, answers).unwrap().hypotheses);
         for (one, other) in before.iter().zip(&after) {
-            let (first, second) = one.pair.split_once(" over ").unwrap();
-            assert_eq!(other.pair, format!("{second} over {first}"));
+            let [first, second] = &one.things;
+            assert_eq!(other.pair(), format!("{second} over {first}"));
             assert_eq!((one.answers, one.people), (other.answers, other.people), "{}", one.name());
             assert!((one.share - other.share).abs() < 1e-12 && one.adjusted == other.adjusted);
         }

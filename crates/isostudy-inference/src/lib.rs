@@ -39,7 +39,6 @@ pub mod screened;
 pub mod screens;
 pub mod self_test;
 pub mod sides;
-pub mod standing;
 pub mod tally;
 pub mod tipping;
 
@@ -55,5 +54,4 @@ pub use open_groups::open_groups;
 pub use recorded::Recorded;
 pub use results::conclusions::{self, Conclusions};
 pub use results::{Preferences, Results};
-pub use standing::Standing;
 pub use tally::{QuestionCount, Tally};

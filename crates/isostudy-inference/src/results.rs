@@ -8,7 +8,7 @@ use crate::audit::{self, audit};
 use crate::ballots::{ALL_METHODS, BallotGroup};
 use crate::decision::{Front, ObjectCandidates, Pick, candidates, fronts, picks};
 use crate::glance;
-use crate::hypotheses::{self, Hypothesis, Robustness, Rules};
+use crate::hypotheses::{self, Dependence, Hypothesis, On, Robustness, Rules, Target};
 use crate::inputs::Inputs;
 use crate::leave_one_out::WithoutOne;
 use crate::liking::Liking;
@@ -22,10 +22,12 @@ use crate::screened::{self, Respondent, WithoutBreakers};
 use crate::screens::{self, Compared};
 use crate::sides::Sides;
 use crate::tipping::Undone;
-use conclusions::Conclusions;
+use conclusions::{Conclusion, Conclusions};
 use isostudy_design::Study;
+use isostudy_design::contrast::Over;
 use isostudy_responses::Responses;
 use isostudy_statistics::{DeclaredBallot, ShownBallot, screening_with};
+use isostudy_timing::beside_other_work;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -42,7 +44,7 @@ pub struct Results<'a> {
     pub likings: Vec<Liking>,
     /// Which method to take.
     pub decision: Decision<'a>,
-    /// What was found in answers; empty without any.
+    /// What was found.
     pub conclusions: Conclusions,
 }
 
@@ -63,9 +65,11 @@ impl<'a> Results<'a> {
         let (answers, (likings, decision)) = rayon::join(of_answers, of_meshes);
         let (preferences, prediction) = answers.unzip();
         let prediction = prediction.flatten();
-        let conclusions = preferences.as_ref().map_or_else(Conclusions::default, |of: &Preferences<'_>| {
+        let of_answers = preferences.as_ref().map_or_else(Conclusions::default, |of: &Preferences<'_>| {
             of.conclusions.clone().with(&likings, prediction.as_ref(), of.rules().level)
         });
+        let is_busy = inputs.bench.is_some_and(|run| beside_other_work(run).is_some());
+        let conclusions = of_answers.with_picks(&decision.picks, is_busy);
         Self { inputs: *inputs, preferences, prediction, likings, decision, conclusions }
     }
 }
@@ -186,6 +190,31 @@ impl<'a> Preferences<'a> {
     /// What decides conclusions.
     pub fn rules(&self) -> Rules {
         self.study.map_or_else(Rules::default, |study| Rules::of(&study.file.analysis))
+    }
+
+    /// What shows that a preference over several objects depends on the object; `None` of one on one object, of a difference, and
+    /// where nothing shows it.
+    pub fn dependence(&self, of: &Hypothesis) -> Option<Dependence<'_>> {
+        let level = of.rules.level;
+        match &of.target {
+            Target::Contrast { levels, over: Over::All | Over::Within(_) } => {
+                hypotheses::depends_on_object(&self.hypotheses, &self.omnibus, *levels, level)
+            }
+            Target::Items { group, on: On::All, .. } => {
+                let between = self.hypotheses.iter().filter(|other| {
+                    let same = matches!(&other.target, Target::Items { group: own, on: On::Difference(_), .. } if own == group);
+                    same && other.contrast == of.contrast && other.adjusted <= level
+                });
+                let clearest = between.min_by(|a, b| a.test.sign_flip.ln_p.total_cmp(&b.test.sign_flip.ln_p));
+                clearest.map(Dependence::Difference)
+            }
+            _ => None,
+        }
+    }
+
+    /// Every contrast in a row, with what was found of it.
+    pub fn concluded(&self) -> Vec<(&glance::Row, &Conclusion)> {
+        self.contrasts.iter().zip(self.conclusions.of_contrasts()).collect()
     }
 
     /// Whether the probes found that people favour a side.

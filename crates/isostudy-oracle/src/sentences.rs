@@ -189,8 +189,8 @@ fn contrasts(
         );
         first.get_or_insert(levels);
         scopes.push(scope.trim_start_matches("within ").to_owned());
-        if !finding.text.starts_with("How much") && ["holds", "open", "depends"].contains(&section) {
-            tested(hypotheses, of, said.after, &row, compared);
+        if !finding.text.starts_with("How much") && section == "preferences" {
+            tested(of, said.after, &row, compared);
             standing(of, finding, &row, compared);
         }
     }
@@ -199,25 +199,24 @@ fn contrasts(
         && let Some(of) = find(levels, &format!("{a} - {b}"))
     {
         let row = format!("{section}: {}", finding.text);
-        tested(hypotheses, of, &finding.text, &row, compared);
+        tested(of, &finding.text, &row, compared);
         let holds = of.conclusion().is_none_or(|said| said.starts_with("differs"));
         compared.check(holds, ["report", &row, "standing"], "holds", format!("{:?}", of.conclusion()));
     }
 }
 
-/// The p of the sign-flip test, and the same corrected.
-fn tested(hypotheses: &[Hypothesis], of: &Hypothesis, text: &str, row: &str, compared: &mut Compared) {
-    let Some(at) = text.find("sign-flip test, p ") else { return };
-    let mut parts = text[at..].split(", ").skip(1);
-    let family = hypotheses.iter().filter(|other| other.family == of.family && other.is_tested()).count();
-    let mut check = |column: &str, said: Option<&str>, want: Range| {
-        let met = said.is_some_and(|said| is_rounded(said, want));
-        compared.check(met, ["report", row, column], said.unwrap_or("nothing"), format!("{want:?}"));
-    };
-    check("p", parts.next(), of.p);
-    if family > 1 {
-        check("p corrected", parts.next(), of.adjusted);
-    }
+/// The p of the sign-flip test, corrected.
+fn tested(of: &Hypothesis, text: &str, row: &str, compared: &mut Compared) {
+    let measured = ["%), adjusted p ", " %, adjusted p ", "The difference holds (adjusted p "];
+    let Some((_, said)) = measured.iter().find_map(|before| text.split_once(before)) else { return };
+    let said =
+        said.split([';', ',', ')']).next().and_then(|said| said.split(". ").next()).unwrap_or_default();
+    compared.check(
+        is_rounded(said, of.adjusted),
+        ["report", row, "p corrected"],
+        said,
+        format!("{:?}", of.adjusted),
+    );
 }
 
 /// Whether `p = 0.0094` is this number, rounded.

@@ -189,8 +189,7 @@ fn every_number_of_a_sentence_that_is_changed_is_seen() {
     let before = columns(&found(&made).wrong);
     for (from, to, seen) in [
         (" answers against ", " answers against 1", "report.counts"),
-        ("sign-flip test, p = 0.", "sign-flip test, p = 0.9", "report.p"),
-        (", p = 0.", ", p = 0.9", "report.p corrected"),
+        (", adjusted p = 0.", ", adjusted p = 0.9", "report.p corrected"),
         ("gave ", "gave 1", "report.counts"),
         (" went left, ", " went left, 1", "report.sides"),
         (" in a circle", " in a circle", ""),

@@ -30,7 +30,7 @@ use claims::numbers::Numbers;
 use comparison::Compared;
 use isostudy_design::published::Claim;
 use isostudy_inference::Results;
-use isostudy_report::statement::{Block, Published, Section};
+use isostudy_report::statement::{Block, Section};
 use isostudy_table::Table;
 
 /// The paper beside a study's results: its numbers and its claims, each compared once.
@@ -59,28 +59,15 @@ impl<'a> Paper<'a> {
         tables.extend(claims::table(source, &self.claims));
     }
 
-    /// The sections of a report that hold the paper against our numbers, with those of `tables` that belong into them, and the
-    /// claims of which the opposite is here, or another number.
-    pub fn published(&self, tables: &[Table]) -> Published {
-        let section = |id, heading, mut blocks: Vec<Block>, name: &str| {
-            let table = tables.iter().find(|table| table.name == name).cloned();
-            blocks.extend(table.map(|table| match name {
-                // Its verdicts are what somebody came for.
-                "claims" => Block::Table(table),
-                _ => Block::Folded(table),
-            }));
-            Section { id, heading, blocks }
-        };
-        let checked = benchmark::findings(&self.numbers, &self.claims);
+    /// The section of a report that holds the paper against our numbers, with those of `tables` that belong into it.
+    pub fn published(&self, tables: &[Table]) -> Vec<Section> {
         let source = &self.numbers.inputs.study.published.source;
-        let recomputed = recomputed::findings(source, &self.compared, &self.claims);
-        Published {
-            fails: recomputed::failing(&self.claims),
-            sections: vec![
-                section("benchmark", "The published benchmark, checked", checked, "benchmark_beside"),
-                section("published", "Published and recomputed", recomputed, "claims"),
-            ],
-        }
+        let mut blocks = recomputed::findings(source, &self.compared, &self.claims);
+        blocks.extend(recomputed::failing(&self.claims));
+        blocks.extend(benchmark::findings(&self.numbers, &self.claims));
+        let own = |name: &&str| tables.iter().find(|table| table.name == **name).cloned();
+        blocks.extend(["claims", "benchmark_beside"].iter().filter_map(|name| own(name)).map(Block::Folded));
+        vec![Section { id: "published", heading: "What was published, and what is here", blocks }]
     }
 
     /// Published numbers and claims of the text that ours differ from without a known reason: table, row and quantity of

@@ -50,7 +50,7 @@ pub fn figures(results: &Results<'_>) -> Result<Vec<Figure>, FigureError> {
 /// If drawing fails, which is not to be expected.
 pub fn figures_of_groups(preferences: &Preferences<'_>) -> Result<Vec<Figure>, FigureError> {
     let drafts = [
-        glance::contrasts(&preferences.contrasts),
+        glance::contrasts(&preferences.concluded()),
         worths::draft(None, &preferences.scales),
         respondents::draft(&preferences.majorities),
     ];
@@ -76,7 +76,7 @@ fn drafts(results: &Results<'_>) -> Vec<Unfinished> {
     }
     if let Some((answered, preferences)) = inputs.answers.zip(results.preferences.as_ref()) {
         let tally = &answered.tally;
-        drafts.extend(glance::contrasts(&preferences.contrasts));
+        drafts.extend(glance::contrasts(&preferences.concluded()));
         drafts.push(answers::per_question(inputs.study, tally, answered.sides_differ()));
         drafts.push(preferences::per_object(inputs.study, tally));
         drafts.push(preferences::overall(inputs.study, tally));

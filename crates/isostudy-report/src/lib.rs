@@ -17,6 +17,7 @@ mod frames;
 mod panel;
 pub mod report;
 mod self_test;
+mod standing;
 pub mod statement;
 mod tables;
 mod wants;

@@ -25,7 +25,8 @@ mod tipping;
 mod told;
 mod worths;
 
-pub use crate::statement::{Block, Finding, Published, Section, Standing};
+pub use crate::standing::Standing;
+pub use crate::statement::{Block, Finding, Section};
 
 use crate::figure::Figure;
 use crate::words::{capital, counted, list};
@@ -72,25 +73,21 @@ const PAPER: [(&str, bool); 8] = [
     ("comparison_summary", false),
 ];
 
-/// The report of a study. `tables` and `figures` are those made from the same results; each is printed once. What was published
-/// is held against it in sections of their own.
-pub fn report(results: &Results<'_>, tables: &[Table], figures: &[Figure], published: Published) -> Report {
+/// The report of a study. `tables` and `figures` are those made from the same results; each is printed once. `published` are
+/// sections of whoever knows a published text: they hold it against the results, with the tables that belong into them.
+pub fn report(
+    results: &Results<'_>,
+    tables: &[Table],
+    figures: &[Figure],
+    published: Vec<Section>,
+) -> Report {
     let (inputs, study) = (&results.inputs, results.inputs.study);
     let evidence = Evidence::of_study(results);
     let mut builder = Builder::new(tables, figures);
     let methods = builder.table("methods");
     builder.decision(&results.decision);
-    let Published { fails, sections } = published;
     if inputs.answers.is_some() {
-        builder.preferences(&evidence, fails);
-    } else {
-        builder.section("fails", "What does not hold", fails);
-    }
-    builder.add_sections(sections);
-    if let Some(answered) = inputs.answers {
-        let found = factors::findings(study, &answered.tally, &evidence);
-        builder.section("factors", "What the sums hide", found);
-        builder.add_figures(&["preference_objects"]);
+        builder.preferences(&evidence);
         builder.section(
             "prediction",
             "What predicts preference",
@@ -98,14 +95,17 @@ pub fn report(results: &Results<'_>, tables: &[Table], figures: &[Figure], publi
         );
         builder.add_figures(&["prediction"]);
         builder.add_tables(&["prediction", "prediction_objects", "prediction_correlations"]);
+    }
+    builder.add_sections(published);
+    if inputs.answers.is_some() {
         builder.reliance(&evidence);
     }
-    let mut paper = Vec::new();
+    let mut paper = inputs.answers.map_or_else(Vec::new, |of| factors::findings(study, &of.tally, &evidence));
     for (name, at_once) in PAPER {
         paper.extend(builder.table(name).map(|t| if at_once { Block::Table(t) } else { Block::Folded(t) }));
     }
-    paper.extend(builder.figures(&["preference_overall", "answers"]));
-    builder.section("tables", "The tables of the study", paper);
+    paper.extend(builder.figures(&["preference_overall", "preference_objects", "answers"]));
+    builder.section("tables", "Tables and figures of the study", paper);
     builder.section("machine", "Machine and timing", machine::described(inputs));
     builder.add_figures(&["pass_times", "stage_times"]);
     let title = study.file.study.title.clone();
@@ -121,7 +121,7 @@ pub fn report_of_groups(
 ) -> Report {
     let evidence = Evidence::of(preferences);
     let mut builder = Builder::new(tables, figures);
-    builder.preferences(&evidence, Vec::new());
+    builder.preferences(&evidence);
     builder.reliance(&evidence);
     builder.finish(title.into(), &evidence, None, None)
 }
@@ -266,27 +266,18 @@ impl Builder {
     }
 
     /// What answers alone can tell.
-    ///
-    /// `fails` is what was claimed and does not hold.
-    fn preferences(&mut self, evidence: &Evidence<'_>, fails: Vec<Block>) {
+    fn preferences(&mut self, evidence: &Evidence<'_>) {
         if evidence.shown.is_empty() {
-            return self.section("fails", "What does not hold", fails);
+            return;
         }
-        let mut glance = self.figures(&["contrasts"]);
-        glance.extend(self.table("contrasts").map(Block::Table));
-        self.section("contrasts", "Every contrast at a glance", glance);
-        let sorted = preference::findings(evidence);
-        let cautioned = |blocks: Vec<Block>| match blocks.is_empty() {
-            true => blocks,
-            false => sides::caution(evidence).into_iter().chain(blocks).collect(),
-        };
-        self.section("holds", "What holds", cautioned(sorted.holds));
-        self.section("depends", "What depends on what", cautioned(sorted.depends));
-        self.section("fails", "What does not hold", fails);
-        self.section("open", "What stays open", sorted.open);
-        self.section("worths", "Worths on one scale", worths::findings(evidence));
-        self.add_figures(&["worths"]);
+        let mut scale = self.figures(&["worths"]);
+        scale.extend(worths::findings(evidence));
+        self.section("worths", "How much each is liked, on one scale", scale);
         self.add_tables(&["scale", "differences", "fit", "worths", "models"]);
+        let mut glance = self.figures(&["contrasts"]);
+        glance.extend(preference::findings(evidence));
+        self.section("preferences", "What was preferred to what", glance);
+        self.add_tables(&["contrasts", "tests", "omnibus"]);
     }
 
     /// How far answers can be relied on, and what they cannot answer.
@@ -294,16 +285,14 @@ impl Builder {
         if evidence.shown.is_empty() {
             return;
         }
-        self.section("unanswerable", "What cannot be answered here", sides::findings(evidence));
+        let parts = [reliability::findings, checks::findings, sides::findings, declaration::findings];
         self.section(
-            "declared",
-            "What was fixed beforehand, and what was not",
-            declaration::findings(evidence),
+            "bearing",
+            "How far the answers can be relied on",
+            parts.iter().flat_map(|of| of(evidence)).collect(),
         );
-        self.section("bearing", "How far the answers can be relied on", reliability::findings(evidence));
         self.add_figures(&["respondents"]);
-        self.add_tables(&["tests", "omnibus", "agreement", "answer_counts"]);
-        self.section("checks", "Checks of the answers", checks::findings(evidence));
+        self.add_tables(&["agreement", "answer_counts"]);
         self.add_tables(&["audit", "screened", "screens", "respondents"]);
     }
 

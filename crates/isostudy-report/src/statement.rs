@@ -1,7 +1,7 @@
 //! What a report is made of: sections of paragraphs, statements, tables and figures.
 
 use crate::figure::Figure;
-pub use isostudy_inference::Standing;
+pub use crate::standing::Standing;
 use isostudy_table::Table;
 
 /// A statement with its verdict.
@@ -44,13 +44,4 @@ pub enum Block {
     Folded(Table),
     /// A figure.
     Figure(Figure),
-}
-
-/// What whoever knows a published text puts into a report.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Published {
-    /// What was published and does not hold.
-    pub fails: Vec<Block>,
-    /// Sections that hold the text against the results, with the tables that belong into them.
-    pub sections: Vec<Section>,
 }

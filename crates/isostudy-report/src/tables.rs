@@ -51,7 +51,7 @@ pub fn tables(results: &Results<'_>) -> Vec<Table> {
 /// What answers alone tell: tests, models, agreement, screening. Tables without rows are left out.
 pub(crate) fn of_preferences(preferences: &Preferences<'_>) -> Vec<Table> {
     let shown_ms = preferences.recorded.protocol().shown_ms;
-    let mut tables: Vec<Table> = glance::contrasts(&preferences.contrasts).into_iter().collect();
+    let mut tables: Vec<Table> = glance::contrasts(&preferences.concluded()).into_iter().collect();
     tables.push(contrasts::tests(&preferences.hypotheses, &preferences.robustness));
     tables.extend(preferences.study.map(|study| omnibus::omnibus(study, &preferences.omnibus)));
     tables.extend(models::model_tables(&preferences.models, preferences.responses.sides_recorded));

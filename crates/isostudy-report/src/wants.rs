@@ -1,5 +1,6 @@
 //! What somebody may want of a mesh, in words.
 
+use isostudy_inference::conclusions::{About, Verdict};
 use isostudy_inference::decision::{Goal, Pick};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::results::Results;
@@ -19,10 +20,14 @@ pub(crate) struct Words {
     pub(crate) says: &'static str,
 }
 
-/// The picks that stand on evidence: where a run was measured beside other work, nothing that times decide.
+/// What was judged of a pick: on which of its objects somebody is the best.
 pub(crate) fn judged<'r, 'a>(results: &'r Results<'a>) -> Vec<&'r Pick<'a>> {
-    let is_busy = busy(&results.inputs).is_some();
-    results.decision.picks.iter().filter(|pick| !is_busy || !is_of_times(pick.want.goal)).collect()
+    let is_judged = |place: usize| {
+        let found = results.conclusions.about(About::Take(place, 0));
+        found.is_some_and(|of| matches!(of.verdict, Verdict::Best { .. }))
+    };
+    let picks = results.decision.picks.iter().enumerate();
+    picks.filter(|(place, _)| is_judged(*place)).map(|(_, pick)| pick).collect()
 }
 
 /// Why times decide nothing, in a sentence; `None` where they do.
@@ -31,10 +36,6 @@ pub(crate) fn busy(inputs: &Inputs<'_>) -> Option<String> {
     Some(format!(
         "Times decide nothing here, because the run was {why}. Run it again on a machine that is left alone."
     ))
-}
-
-fn is_of_times(goal: Goal) -> bool {
-    matches!(goal, Goal::Fastest | Goal::Chunk | Goal::Edit | Goal::Faultless | Goal::Topology)
 }
 
 /// What a purpose is called.

@@ -30,6 +30,11 @@ pub fn change(percent: f64) -> String {
     if text.starts_with('\u{2212}') { format!("{text} %") } else { format!("+{text} %") }
 }
 
+/// `1 person`, `26 people`.
+pub fn people(number: usize) -> String {
+    if number == 1 { "1 person".into() } else { format!("{number} people") }
+}
+
 /// `26,144`.
 pub fn whole(count: u64) -> String {
     let digits = count.to_string();

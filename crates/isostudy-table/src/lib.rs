@@ -111,8 +111,7 @@ impl Cell {
             Self::Count(count) => signed(&count.to_string()),
             Self::P(value, decimals) => {
                 let least = 10.0_f64.powi(-i32::try_from(*decimals).expect("a few decimals"));
-                let shown = format!("{value:.decimals$}");
-                if shown.parse() == Ok(0.0) { format!("< {least:.decimals$}") } else { shown }
+                if *value < least { format!("< {least:.decimals$}") } else { format!("{value:.decimals$}") }
             }
             other => other.in_full(),
         }
@@ -303,10 +302,10 @@ mod tests {
     #[test]
     fn small_p_values_are_not_zero() {
         let shown = |p: f64, decimals| Cell::P(p, decimals).shown();
-        assert_eq!((shown(0.00004, 4), shown(0.00006, 4)), ("< 0.0001".into(), "0.0001".into()));
+        assert_eq!((shown(0.00004, 4), shown(0.00006, 4)), ("< 0.0001".into(), "< 0.0001".into()));
         assert_eq!(
             (shown(0.0, 5), shown(7.17e-6, 5), shown(1.0, 4)),
-            ("< 0.00001".into(), "0.00001".into(), "1.0000".into())
+            ("< 0.00001".into(), "< 0.00001".into(), "1.0000".into())
         );
         let full = [0.04, 2e-5, 7.17e-6, 1e-300, 0.0].map(|p| Cell::P(p, 4).in_full());
         assert_eq!(full, ["0.04", "0.00002", "7.17e-6", "1e-300", "5e-324"]);

@@ -155,6 +155,8 @@ pub struct Best<'a> {
     pub next: Option<(&'a Method, Estimate)>,
     /// Which others are not told apart from the best.
     pub alike: Vec<MethodId>,
+    /// Whether nobody was shown to be worse.
+    pub is_everybody_alike: bool,
     pub cost: Cost,
 }
 
@@ -228,12 +230,13 @@ impl Want {
         let &&(taken, value) = tied.iter().find(|(of, _)| is_as_good(of)).unwrap_or(&&ranked[0]);
         let others = || ranked.iter().filter(|(of, _)| of.id() != taken.id());
         let next = others().next().map(|(of, value)| (of.method, *value));
-        let alike = others().filter(is_alike).map(|(of, _)| of.id()).collect();
+        let alike: Vec<MethodId> = others().filter(is_alike).map(|(of, _)| of.id()).collect();
+        let is_everybody_alike = !alike.is_empty() && alike.len() == others().count();
         let cost = match self.among {
             Among::SameTriangles => Cost::of(taken, &pool),
             _ => Cost::of(taken, &Among::SameCells.pool(&of.candidates)),
         };
-        Some((taken.method, Best { object: of.object, value, next, alike, cost }))
+        Some((taken.method, Best { object: of.object, value, next, alike, is_everybody_alike, cost }))
     }
 }
 

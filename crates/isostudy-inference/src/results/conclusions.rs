@@ -1,21 +1,22 @@
 //! What was found, as data: what each conclusion is about, its verdict, and what limits it.
 //!
-//! The abstract, the sections of the report, the tables' column of conclusions, both pages and the last lines of `analyse` render these.
+//! The abstract, the report's sections, the tables' verdicts, what both pages show first and the last lines of `analyse` render these.
 //! A verdict stands on the test of that very thing, so no rendering can say what another denies.
 
-use crate::audit;
-use crate::hypotheses::{self, Conclusion as Tested};
-use crate::liking::{self, Liking, Order};
+use crate::decision::{Goal, Pick};
+use crate::glance::Row;
+use crate::hypotheses::{self, Conclusion as Tested, Hypothesis};
+use crate::liking::{self, Liking, Order, Top};
 use crate::prediction::Prediction;
 use crate::results::Preferences;
-use crate::standing::Standing;
+use crate::{BallotGroup, audit};
 use isostudy_design::contrast::Over;
-use isostudy_statistics::{FitError, Heterogeneity, Participants, heterogeneity};
+use isostudy_statistics::{Difference, FitError, Heterogeneity, Participants, heterogeneity};
 
 /// What a conclusion is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum About {
-    /// A contrast over all answers, by its place among [`Preferences::contrasts`].
+    /// A contrast, by its place among [`Preferences::contrasts`].
     Contrast(usize),
     /// Differences of a group's items on one scale, by its place among [`Preferences::scales`].
     Scale(usize),
@@ -33,6 +34,9 @@ pub enum About {
     Screening,
     /// Whether a metric goes with preference, by its place among [`Prediction::metrics`].
     Prediction(usize),
+    /// Who is the best in time, error, shape or topology on an object: the place among
+    /// [`Decision::picks`](crate::results::Decision::picks), and that among its objects.
+    Take(usize, usize),
 }
 
 /// How it came out.
@@ -51,11 +55,11 @@ pub enum Verdict {
     Undecided,
     /// The best, and the others from whom it was not shown to differ.
     Best {
-        /// The name of the top of the scale.
+        /// The name of the best.
         best: String,
-        /// The names of others, from the largest worth on.
+        /// The names of others, from the best on.
         tied: Vec<String>,
-        /// Whether nobody was shown to be liked less.
+        /// Whether nobody was shown to be worse.
         is_everybody: bool,
     },
     /// Nothing could be said.
@@ -67,12 +71,16 @@ pub enum Verdict {
 pub enum Why {
     /// No outcome of so few people could have shown anything.
     TooFew,
+    /// Nobody leans one way or the other.
+    NobodyLeans,
     /// The design, or what was recorded, does not tell.
     Design,
     /// The model has no estimate.
     NoEstimate(FitError),
     /// Some items never won against the others, so that nothing bounds their worths.
     Separated,
+    /// Times were measured beside other work.
+    Busy,
 }
 
 /// What limits a conclusion.
@@ -84,8 +92,14 @@ pub enum Limit {
     SideFavoured,
     /// Only repeats show pairs with their sides exchanged.
     OnlyRepeatsExchange,
-    /// It depends on the object.
+    /// It depends on the object: what is there over all objects need not be there on any.
     DependsOnObject,
+    /// It holds, and is smaller than the margin.
+    WithinMargin,
+    /// It would not hold with one correction over all tests.
+    NotOverAll,
+    /// The one part was asked about other objects than the other, so that objects may make the difference.
+    OtherObjects,
 }
 
 /// A conclusion.
@@ -99,13 +113,34 @@ pub struct Conclusion {
     pub limits: Vec<Limit>,
 }
 
-/// All conclusions of answers, in the order in which they are told.
+impl Conclusion {
+    /// Whether it was shown.
+    pub fn holds(&self) -> bool {
+        matches!(self.verdict, Verdict::Holds { .. })
+    }
+
+    /// Whether this limits it.
+    pub fn is_limited(&self, limit: Limit) -> bool {
+        self.limits.contains(&limit)
+    }
+}
+
+/// All conclusions, in the order in which they are told.
 #[derive(Debug, Clone, Default)]
 pub struct Conclusions {
     /// The conclusions.
     pub all: Vec<Conclusion>,
-    /// The spread between people, of the group with the most answers; `None` where it has no estimate.
-    pub spread: Option<Heterogeneity>,
+    /// The spread between people, of the scale with the most answers; `None` where it has no estimate.
+    pub spread: Option<Spread>,
+}
+
+/// How far people differ in their tastes.
+#[derive(Debug, Clone, Copy)]
+pub struct Spread {
+    /// The standard deviation between people.
+    pub of: Heterogeneity,
+    /// The largest difference of two items on the same scale, in log-odds; 0 where there is no scale.
+    pub largest_difference: f64,
 }
 
 impl Conclusions {
@@ -113,25 +148,16 @@ impl Conclusions {
     pub fn of(preferences: &Preferences<'_>) -> Self {
         let level = preferences.rules().level;
         let limits = limits(preferences);
-        let mut all = Vec::new();
-        let whole = |row: &crate::glance::Row| !row.is_difference && row.is_whole;
-        for (place, row) in preferences.contrasts.iter().enumerate().filter(|(_, row)| whole(row)) {
-            let verdict = match row.standing {
-                Standing::Holds => Verdict::Holds { held: 1, of: 1 },
-                Standing::Equal => Verdict::Equal,
-                Standing::TooFew => Verdict::NotJudged(Why::TooFew),
-                _ => Verdict::Undecided,
-            };
-            all.push(Conclusion { about: About::Contrast(place), verdict, limits: limits.clone() });
-        }
+        let contrasts = preferences.contrasts.iter().enumerate();
+        let mut all: Vec<Conclusion> =
+            contrasts.map(|(place, row)| contrast(preferences, place, row, &limits)).collect();
         for (place, of) in preferences.scales.iter().enumerate().filter(|(_, of)| of.group.items.len() > 2) {
             let verdict = match &of.scale {
                 Err(reason) => Verdict::NotJudged(Why::NoEstimate(*reason)),
                 Ok(scale) if scale.fit.penalised() => Verdict::NotJudged(Why::Separated),
                 Ok(scale) => {
-                    let is_shown = |of: &&isostudy_statistics::Difference| {
-                        of.spread.is_some_and(|spread| spread.adjusted <= level)
-                    };
+                    let is_shown =
+                        |of: &&Difference| of.spread.is_some_and(|spread| spread.adjusted <= level);
                     match scale.differences.iter().filter(is_shown).count() {
                         0 => Verdict::Undecided,
                         held => Verdict::Holds { held, of: scale.differences.len() },
@@ -143,11 +169,10 @@ impl Conclusions {
         }
         all.extend(objects(preferences));
         all.push(Conclusion { about: About::Side, verdict: side(preferences), limits: Vec::new() });
-        let spread = widest(preferences)
-            .and_then(|group| heterogeneity(&Participants::of(group.items.len(), &group.ballots)).ok());
+        let spread = spread(preferences);
         let verdict = match spread {
             None => Verdict::NotJudged(Why::Design),
-            Some(of) if of.p <= level => Verdict::Holds { held: 1, of: 1 },
+            Some(spread) if spread.of.p <= level => Verdict::Holds { held: 1, of: 1 },
             Some(_) => Verdict::Undecided,
         };
         all.push(Conclusion { about: About::People, verdict, limits: Vec::new() });
@@ -157,9 +182,10 @@ impl Conclusions {
 
     /// Adds who is liked most and what predicts it.
     pub(crate) fn with(mut self, likings: &[Liking], prediction: Option<&Prediction>, level: f64) -> Self {
-        let limits = self.all.first().map_or_else(Vec::new, |of| of.limits.clone());
+        let limits = self.about(About::Contrast(0)).map_or_else(Vec::new, |of| of.limits.clone());
         for (place, liking) in likings.iter().enumerate() {
             let verdict = match (&liking.top, &liking.worths) {
+                (Some(Top { is_penalised: true, .. }), _) => Verdict::NotJudged(Why::Separated),
                 (Some(top), _) => Verdict::Best {
                     best: top.best.to_string(),
                     tied: top.alike.iter().map(ToString::to_string).collect(),
@@ -181,16 +207,83 @@ impl Conclusions {
         self
     }
 
+    /// Adds who is the best in what. Of a run beside other work nothing that times decide is judged.
+    pub(crate) fn with_picks(mut self, picks: &[Pick<'_>], is_busy: bool) -> Self {
+        for (place, pick) in picks.iter().enumerate() {
+            for (on, best) in pick.on.iter().enumerate() {
+                let verdict = match is_busy && pick.want.goal.is_of_times() {
+                    true => Verdict::NotJudged(Why::Busy),
+                    false => Verdict::Best {
+                        best: pick.method.id.to_string(),
+                        tied: best.alike.iter().map(ToString::to_string).collect(),
+                        is_everybody: best.is_everybody_alike,
+                    },
+                };
+                self.all.push(Conclusion { about: About::Take(place, on), verdict, limits: Vec::new() });
+            }
+        }
+        self
+    }
+
     /// The one about this.
     pub fn about(&self, about: About) -> Option<&Conclusion> {
         self.all.iter().find(|of| of.about == about)
     }
+
+    /// The ones about contrasts, in the order of [`Preferences::contrasts`].
+    pub fn of_contrasts(&self) -> impl Iterator<Item = &Conclusion> {
+        self.all.iter().filter(|of| matches!(of.about, About::Contrast(_)))
+    }
 }
 
-/// The top of a group's scale.
+impl Goal {
+    /// Whether times decide it.
+    pub fn is_of_times(self) -> bool {
+        matches!(self, Self::Fastest | Self::Chunk | Self::Edit | Self::Faultless | Self::Topology)
+    }
+}
+
+/// Parts of a difference that are farther apart than this are about different things, see
+/// [`ScoreTest::apart`](isostudy_statistics::ScoreTest::apart).
+const OTHER_OBJECTS: f64 = 0.1;
+
+fn contrast(preferences: &Preferences<'_>, place: usize, row: &Row, limits: &[Limit]) -> Conclusion {
+    let hypothesis = &preferences.hypotheses[row.hypothesis];
+    let mut limits = limits.to_vec();
+    let verdict = match hypothesis.conclusion() {
+        Tested::Differs | Tested::DiffersWithinMargin
+            if row.is_difference && hypothesis.test.apart > OTHER_OBJECTS =>
+        {
+            limits.push(Limit::OtherObjects);
+            Verdict::NotJudged(Why::Design)
+        }
+        Tested::Differs => Verdict::Holds { held: 1, of: 1 },
+        Tested::DiffersWithinMargin => {
+            limits.push(Limit::WithinMargin);
+            Verdict::Holds { held: 1, of: 1 }
+        }
+        Tested::Equal => Verdict::Equal,
+        Tested::TooFew => Verdict::NotJudged(Why::TooFew),
+        Tested::NobodyLeans => Verdict::NotJudged(Why::NobodyLeans),
+        Tested::Open | Tested::AveragesOut | Tested::HiddenBySide | Tested::NotTested => Verdict::Undecided,
+    };
+    let level = hypothesis.rules.level;
+    if matches!(verdict, Verdict::Holds { .. }) && hypothesis.adjusted_over_all.is_some_and(|p| p > level) {
+        limits.push(Limit::NotOverAll);
+    }
+    if preferences.dependence(hypothesis).is_some() {
+        limits.push(Limit::DependsOnObject);
+    }
+    Conclusion { about: About::Contrast(place), verdict, limits }
+}
+
+/// The top of a group's scale; none where nothing bounds the worths.
 fn top(preferences: &Preferences<'_>, place: usize, level: f64, limits: &[Limit]) -> Option<Conclusion> {
     let of = &preferences.scales[place];
     let (scale, items) = (of.scale.as_ref().ok()?, &of.group.items);
+    if scale.fit.penalised() {
+        return None;
+    }
     let is_shown = |a: usize, b: usize| {
         liking::is_shown(preferences.study, &preferences.hypotheses, &of.group.name, &items[a], &items[b])
     };
@@ -203,9 +296,14 @@ fn top(preferences: &Preferences<'_>, place: usize, level: f64, limits: &[Limit]
     Some(Conclusion { about: About::Top(place), verdict, limits: limits.to_vec() })
 }
 
-/// The group with the most answers: of equal ones the one with the most items.
-fn widest<'a>(preferences: &'a Preferences<'_>) -> Option<&'a crate::BallotGroup> {
-    preferences.groups.iter().max_by_key(|of| (of.ballots.len(), of.items.len()))
+/// Of the group with the most answers: of equal ones the one with the most items.
+fn spread(preferences: &Preferences<'_>) -> Option<Spread> {
+    let size = |of: &&BallotGroup| (of.ballots.len(), of.items.len());
+    let group = preferences.groups.iter().max_by_key(size)?;
+    let of = heterogeneity(&Participants::of(group.items.len(), &group.ballots)).ok()?;
+    let own = preferences.scales.iter().find(|scale| scale.group.name == group.name);
+    let differences = own.and_then(|own| own.scale.as_ref().ok()).into_iter().flat_map(|of| &of.differences);
+    Some(Spread { of, largest_difference: differences.map(|of| of.log_odds.abs()).fold(0.0, f64::max) })
 }
 
 fn limits(preferences: &Preferences<'_>) -> Vec<Limit> {
@@ -230,20 +328,11 @@ fn side(preferences: &Preferences<'_>) -> Verdict {
 
 /// Contrasts over all answers that depend on the object.
 fn objects(preferences: &Preferences<'_>) -> Vec<Conclusion> {
-    let hypotheses = preferences.hypotheses.iter().enumerate();
-    let depends = hypotheses.filter(|(_, of)| match of.target {
-        hypotheses::Target::Contrast { levels, over: Over::All } => {
-            of.is_tested()
-                && hypotheses::depends_on_object(
-                    &preferences.hypotheses,
-                    &preferences.omnibus,
-                    levels,
-                    of.rules.level,
-                )
-                .is_some()
-        }
-        _ => false,
-    });
+    let is_whole = |of: &Hypothesis| {
+        matches!(of.target, hypotheses::Target::Contrast { over: Over::All, .. }) && of.is_tested()
+    };
+    let all = preferences.hypotheses.iter().enumerate();
+    let depends = all.filter(|(_, of)| is_whole(of) && preferences.dependence(of).is_some());
     let conclusion = |(place, _)| Conclusion {
         about: About::Object(place),
         verdict: Verdict::Holds { held: 1, of: 1 },
@@ -258,12 +347,10 @@ fn screening(preferences: &Preferences<'_>) -> Option<Conclusion> {
     if any.people.is_empty() {
         return None;
     }
-    let changed = any.tests.iter().filter(|(with, without)| {
-        let holds = |of: &hypotheses::Hypothesis| {
-            matches!(of.conclusion(), Tested::Differs | Tested::DiffersWithinMargin)
-        };
-        without.as_ref().is_none_or(|without| holds(with) != holds(without))
-    });
+    let changed = any
+        .tests
+        .iter()
+        .filter(|(with, without)| without.as_ref().is_none_or(|without| with.differs() != without.differs()));
     let verdict = match changed.count() {
         0 => Verdict::Undecided,
         held => Verdict::Holds { held, of: any.tests.len() },

@@ -5,8 +5,8 @@ use super::draft::{Unfinished, canvas_with_legend};
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
-use crate::statement::Standing;
 use crate::words::capital;
+use isostudy_inference::conclusions::Conclusion;
 use isostudy_inference::glance;
 
 /// More rows than this are read in the table alone.
@@ -15,7 +15,7 @@ const MOST: usize = 120;
 const GAP: f64 = 34.0;
 
 /// Nothing if nothing was tested, or too much.
-pub(super) fn contrasts(rows: &[glance::Row]) -> Option<Unfinished> {
+pub(super) fn contrasts(rows: &[(&glance::Row, &Conclusion)]) -> Option<Unfinished> {
     if rows.is_empty() || rows.len() > MOST {
         return None;
     }
@@ -47,10 +47,10 @@ pub(super) fn contrasts(rows: &[glance::Row]) -> Option<Unfinished> {
     Some(Unfinished { name: "contrasts", caption, canvas })
 }
 
-fn blocks(rows: &[glance::Row], differences: bool) -> Vec<Block> {
+fn blocks(rows: &[(&glance::Row, &Conclusion)], differences: bool) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
-    for row in rows.iter().filter(|row| row.is_difference == differences) {
-        let heading = capital(&row.pair);
+    for (row, found) in rows.iter().filter(|(row, _)| row.is_difference == differences) {
+        let heading = capital(&row.pair());
         if blocks.last().is_none_or(|last| last.heading != heading) {
             blocks.push(Block { heading, rows: Vec::new() });
         }
@@ -61,7 +61,7 @@ fn blocks(rows: &[glance::Row], differences: bool) -> Vec<Block> {
             label,
             value: Some(row.share),
             interval: row.interval,
-            mark: Mark::nth(0, row.standing == Standing::Holds),
+            mark: Mark::nth(0, found.holds()),
             remark: parts.join("\t"),
         });
     }

@@ -4,7 +4,6 @@ use super::asked;
 use isostudy_design::Study;
 use isostudy_inference::ballots::BallotGroup;
 use isostudy_inference::conclusions::{Conclusion, Limit};
-use isostudy_inference::glance::Row;
 use isostudy_inference::hypotheses::{Hypothesis, Rules};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::omnibus::Omnibus;
@@ -39,8 +38,6 @@ pub(super) struct Evidence<'a> {
     pub(super) groups: &'a [BallotGroup],
     pub(super) hypotheses: &'a [Hypothesis],
     pub(super) omnibus: &'a [Omnibus],
-    /// Every contrast in a row.
-    pub(super) contrasts: &'a [Row],
     /// The items of each group on one scale.
     pub(super) scales: &'a [GroupScale<'a>],
 }
@@ -72,7 +69,6 @@ impl<'a> Evidence<'a> {
             groups: &[],
             hypotheses: &[],
             omnibus: &[],
-            contrasts: &[],
             scales: &[],
         }
     }
@@ -95,7 +91,6 @@ impl<'a> Evidence<'a> {
             groups: preferences.groups,
             hypotheses: &preferences.hypotheses,
             omnibus: &preferences.omnibus,
-            contrasts: &preferences.contrasts,
             scales: &preferences.scales,
         }
     }
@@ -112,7 +107,7 @@ impl<'a> Evidence<'a> {
 
     /// Whether repeats show pairs in both orders where comparisons do not.
     pub(super) fn are_repeats_exchanged(&self) -> bool {
-        let limited = |of: &Conclusion| of.limits.contains(&Limit::OnlyRepeatsExchange);
+        let limited = |of: &Conclusion| of.is_limited(Limit::OnlyRepeatsExchange);
         self.preferences.is_some_and(|of| of.conclusions.all.iter().any(limited))
     }
 
@@ -122,10 +117,15 @@ impl<'a> Evidence<'a> {
     }
 
     pub(super) fn participants(&self) -> usize {
-        self.shown.iter().map(|b| b.participant()).collect::<BTreeSet<_>>().len()
+        participants(self.shown)
     }
 
     pub(super) fn questions(&self) -> usize {
         self.shown.iter().map(|b| b.question()).collect::<BTreeSet<_>>().len()
     }
+}
+
+/// How many people gave these answers.
+pub(super) fn participants(shown: &[ShownBallot]) -> usize {
+    shown.iter().map(|b| b.participant()).collect::<BTreeSet<_>>().len()
 }

@@ -1,11 +1,13 @@
 //! A report as Markdown.
 
 use super::Report;
+use crate::figure::Figure;
 use crate::statement::Block;
+use crate::words::counted;
 use isostudy_table::markdown::escape;
 
 impl Report {
-    /// GitHub-flavoured Markdown; figures are links to `figures/<name>.svg` beside it.
+    /// GitHub-flavoured Markdown; figures and folded tables are links to `figures/<name>.svg` and `tables/<name>.csv` beside it.
     pub fn to_markdown(&self) -> String {
         let mut text = format!("# {}\n", escape(&self.title));
         text.push('\n');
@@ -29,7 +31,7 @@ impl Report {
             text.push_str(&format!("\n## {}\n", section.heading));
             let mut listing = false;
             for block in &section.blocks {
-                let item = matches!(block, Block::Finding(_));
+                let item = matches!(block, Block::Finding(_) | Block::Folded(_));
                 if !(item && listing) {
                     text.push('\n');
                 }
@@ -40,10 +42,16 @@ impl Report {
                         let label = crate::words::capital(finding.standing.label());
                         text.push_str(&format!("- **{label}.** {}\n", escape(&finding.text)));
                     }
-                    Block::Table(table) | Block::Folded(table) => text.push_str(&table.to_markdown()),
-                    Block::Figure(figure) => {
-                        let caption = escape(&figure.caption);
-                        text.push_str(&format!("![{caption}](figures/{}.svg)\n\n{caption}\n", figure.name));
+                    Block::Table(table) => text.push_str(&table.to_markdown()),
+                    // Markdown folds nothing, and nobody reads hundreds of rows.
+                    Block::Folded(table) => text.push_str(&format!(
+                        "- {}, {}: [{name}](tables/{name}.csv)\n",
+                        escape(&table.caption),
+                        counted(table.rows.len(), "row"),
+                        name = table.name
+                    )),
+                    Block::Figure(Figure { name, caption, .. }) => {
+                        text.push_str(&format!("![{name}](figures/{name}.svg)\n\n{}\n", escape(caption)));
                     }
                 }
             }

@@ -1,214 +1,168 @@
-//! What was preferred to what: sorted by what holds, what depends on something else, and what is open.
+//! What was preferred to what: first what was shown, then what was not. The table of contrasts has every row.
 
 use super::evidence::Evidence;
-use super::finding::{over_all, score, tested};
-use super::{names, tipping, worths};
-use crate::statement::Block;
-use crate::statement::{Finding, Standing};
-use crate::words::{against, capital, counted, list, number, p};
-use isostudy_design::Level;
+use super::finding::{self, of_contrast};
+use super::{names, sides, tipping, worths};
+use crate::standing::Standing;
+use crate::statement::{Block, Finding};
+use crate::words::{against, capital, counted, list, p};
 use isostudy_design::Study;
 use isostudy_design::contrast::{Over, contrasts};
-use isostudy_inference::hypotheses::{self, Conclusion, Dependence, Hypothesis, On, Target};
+use isostudy_inference::conclusions::{Conclusion, Limit, Verdict, Why};
+use isostudy_inference::glance::Row;
+use isostudy_inference::hypotheses::{Hypothesis, On, Target};
 use isostudy_inference::omnibus::{Asked, Omnibus};
 use isostudy_statistics::ScoreTest;
 
-/// So many comparisons that too few people lean on are told one by one, more of them together.
-const APART: usize = 3;
-/// Open dependences named at most; the table of tests has all.
+/// Sentences of one kind at most; the table has all.
+const MOST: usize = 12;
+/// So many contrasts that nothing was shown of are told one by one, more of them together.
+const APART: usize = 8;
+/// Contrasts named in one sentence at most.
 const NAMED: usize = 4;
 
-/// Blocks of three sections.
-#[derive(Default)]
-pub(super) struct Sorted {
-    pub(super) holds: Vec<Block>,
-    pub(super) depends: Vec<Block>,
-    pub(super) open: Vec<Block>,
-    too_few: Vec<TooFew>,
+/// A contrast, and what was found of it.
+type Found<'a> = (&'a Row, &'a Conclusion);
+
+pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
+    let Some(preferences) = evidence.preferences else { return Vec::new() };
+    let mut found: Vec<Finding> =
+        evidence.study.map_or_else(Vec::new, |study| levels_differ(study, evidence));
+    let all = preferences.concluded();
+    // By how much a contrast is about: over all answers, over a part of them, on one object.
+    let kinds = [Kind::Whole, Kind::Part, Kind::OnOneObject];
+    let is_difference = |of: &&Found<'_>| of.0.is_difference;
+    let (differences, preferences): (Vec<Found<'_>>, Vec<Found<'_>>) = all.iter().partition(is_difference);
+    let is_shown = |of: &&Found<'_>| of.1.holds() || of.1.verdict == Verdict::Equal;
+    let mut open = Vec::new();
+    for kind in kinds {
+        let own = preferences.iter().filter(|of| Kind::of(evidence, of.0) == kind);
+        let (shown, not): (Vec<&Found<'_>>, Vec<&Found<'_>>) = own.partition(is_shown);
+        let total = shown.len() + not.len();
+        found.extend(told(&shown, "results", |of| preference(evidence, of)));
+        open.extend(not_shown(evidence, &not, &format!("{}{}", counted(total, "comparison"), kind.place())));
+    }
+    let (shown, not): (Vec<&Found<'_>>, Vec<&Found<'_>>) =
+        differences.iter().partition(|(_, of)| of.holds() || of.is_limited(Limit::OtherObjects));
+    found.extend(told(&shown, "differences", |of| difference(evidence, of)));
+    open.extend(not_shown(evidence, &not, &counted(differences.len(), "difference")));
+    let blocks = found.into_iter().chain(open).map(Block::Finding);
+    sides::sides_and_methods(evidence).into_iter().chain(blocks).collect()
 }
 
-/// A comparison on which too few people lean one way or the other.
-struct TooFew {
-    place: usize,
-    finding: Finding,
-    name: String,
-    leaning: usize,
+/// What contrasts are counted together.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Whole,
+    Part,
+    OnOneObject,
 }
 
-impl Sorted {
-    fn add(&mut self, evidence: &Evidence<'_>, hypothesis: &Hypothesis, finding: Finding) {
-        match finding.standing {
-            Standing::Holds | Standing::Equal => self.holds.push(Block::Finding(finding)),
-            _ if matches!(hypothesis.conclusion(), Conclusion::TooFew | Conclusion::NobodyLeans) => {
-                self.too_few.push(TooFew {
-                    place: self.open.len() + self.too_few.len(),
-                    finding,
-                    name: names::hypothesis(evidence, hypothesis),
-                    leaning: hypothesis.test.leaning(),
-                });
+impl Kind {
+    fn of(evidence: &Evidence<'_>, row: &Row) -> Self {
+        match &evidence.hypotheses[row.hypothesis].target {
+            Target::Contrast { over: Over::Object(_), .. } | Target::Items { on: On::Object(_), .. } => {
+                Self::OnOneObject
             }
-            _ => self.open.push(Block::Finding(finding)),
+            _ if row.is_whole => Self::Whole,
+            _ => Self::Part,
         }
     }
 
-    /// Puts the comparisons that too few lean on among the open ones: in their place while they are few, else as one.
-    fn fold(mut self, all: usize, level: f64) -> Self {
-        let too_few = std::mem::take(&mut self.too_few);
-        if too_few.len() <= APART {
-            for TooFew { place, finding, .. } in too_few {
-                self.open.insert(place, Block::Finding(finding));
-            }
-            return self;
+    /// Said after how many there are.
+    fn place(self) -> &'static str {
+        match self {
+            Self::Whole => "",
+            Self::Part => " within one level each",
+            Self::OnOneObject => " on one object each",
         }
-        let most = too_few.iter().map(|of| of.leaning).max().unwrap_or(0);
-        let mut named: Vec<String> = too_few.iter().take(APART).map(|of| of.name.clone()).collect();
-        named.push(format!("{} more", too_few.len() - APART));
+    }
+}
+
+/// A sentence each, and how many more there are.
+fn told(shown: &[&Found<'_>], noun: &str, one: impl Fn(&Found<'_>) -> Finding) -> Vec<Finding> {
+    let mut found: Vec<Finding> = shown.iter().take(MOST).map(|of| one(of)).collect();
+    if shown.len() > MOST {
+        let text = format!("The table of contrasts has {} more {noun} like these.", shown.len() - MOST);
+        found.push(Finding::new(Standing::Noted, text));
+    }
+    found
+}
+
+/// What was shown of a preference, what else the scale says, and whether one object makes it.
+fn preference(evidence: &Evidence<'_>, &(row, found): &Found<'_>) -> Finding {
+    let hypothesis = &evidence.hypotheses[row.hypothesis];
+    let mut finding = of_contrast(evidence, row, found);
+    if let Some(study) = evidence.study.filter(|_| found.holds() && found.is_limited(Limit::DependsOnObject))
+    {
+        finding.text.push_str(&without_one_object(study, evidence, hypothesis));
+    }
+    finding
+}
+
+/// Those of which nothing was shown: a few one by one, more of them together.
+fn not_shown(evidence: &Evidence<'_>, not: &[&Found<'_>], of_all: &str) -> Vec<Finding> {
+    let is_too_few =
+        |of: &&&Found<'_>| matches!(of.1.verdict, Verdict::NotJudged(Why::TooFew | Why::NobodyLeans));
+    let (too_few, open): (Vec<&Found<'_>>, Vec<&Found<'_>>) =
+        not.iter().copied().partition(|of| is_too_few(&of));
+    let mut found = Vec::new();
+    let are_differences = not.iter().all(|of| of.0.is_difference);
+    if open.len() <= APART && !are_differences {
+        found.extend(open.iter().map(|&&(row, of)| {
+            let mut finding = of_contrast(evidence, row, of);
+            if let Target::Items { group, first, second, on: On::All } =
+                &evidence.hypotheses[row.hypothesis].target
+            {
+                finding.text.push_str(&worths::beside(evidence, group, [first, second]));
+            }
+            finding
+        }));
+    } else if let Some(smallest) = open.iter().map(|of| of.0.adjusted).min_by(f64::total_cmp) {
         let text = format!(
-            "{} of {} are not decided: {}. {} The table of tests has their counts.",
+            "Nothing was shown of {} of {of_all}: {} (smallest adjusted {}). That is not to say that there is nothing.",
+            open.len(),
+            named(evidence, &open),
+            p(smallest)
+        );
+        found.push(Finding::new(Standing::Open, text));
+    }
+    if too_few.len() <= APART && !are_differences {
+        found.extend(too_few.iter().map(|&&(row, of)| of_contrast(evidence, row, of)));
+    } else if !too_few.is_empty() {
+        let leaning = too_few.iter().map(|of| evidence.hypotheses[of.0.hypothesis].test.leaning());
+        let text = format!(
+            "{} of {of_all} are not decided: {}. {}",
             too_few.len(),
-            counted(all, "comparison"),
-            list(&named),
-            match most {
+            named(evidence, &too_few),
+            match leaning.max().unwrap_or(0) {
                 0 => "Nobody leans one way or the other on any of them.".into(),
                 most => format!(
-                    "At most {} {} one way or the other, and no outcome of so few is significant (exact sign-flip test; {} \
-                     would have to).",
+                    "At most {} {} one way or the other, and no outcome of fewer than {} is significant.",
                     counted(most, "participant"),
                     if most == 1 { "leans" } else { "lean" },
-                    fewest_leaning(level)
+                    fewest_leaning(evidence.rules().level)
                 ),
             }
         );
-        let standing = if most == 0 { Standing::Open } else { Standing::TooFew };
-        self.open.push(Block::Finding(Finding::new(standing, text)));
-        self
+        let nobody = too_few.iter().all(|of| of.1.verdict == Verdict::NotJudged(Why::NobodyLeans));
+        found.push(Finding::new(if nobody { Standing::Open } else { Standing::TooFew }, text));
     }
+    found
+}
+
+fn named(evidence: &Evidence<'_>, all: &[&Found<'_>]) -> String {
+    let name = |of: &&Found<'_>| names::hypothesis(evidence, &evidence.hypotheses[of.0.hypothesis]);
+    let mut names: Vec<String> = all.iter().take(NAMED).map(name).collect();
+    if all.len() > NAMED {
+        names.push(format!("{} more", all.len() - NAMED));
+    }
+    list(&names)
 }
 
 /// The fewest people whose unanimity is significant.
 fn fewest_leaning(level: f64) -> usize {
     (1..).find(|&people| 2.0_f64.powi(1 - people) <= level).expect("a power of a half") as usize
-}
-
-pub(super) fn findings(evidence: &Evidence<'_>) -> Sorted {
-    let mut sorted = Sorted::default();
-    let level = evidence.rules().level;
-    let Some(study) = evidence.study else {
-        return of_items(evidence, sorted, level);
-    };
-    sorted.holds.extend(levels_differ(study, evidence));
-    let mut by_object = Vec::new();
-    for (hypothesis, levels, over) in contrasts_of(evidence) {
-        let [first, second] = levels.map(|level| names::level(study, level));
-        let scope = names::over(study, over);
-        match over {
-            Over::Difference(..) | Over::ObjectDifference(..) => {}
-            Over::Object(_) => {
-                by_object.push(Block::Finding(preference(evidence, hypothesis, &first, &second, &scope)));
-            }
-            Over::All | Over::Within(_) => {
-                let mut finding = preference(evidence, hypothesis, &first, &second, &scope);
-                if let Some(shown) = depends_on_object(evidence, levels) {
-                    caution(study, evidence, &mut finding, hypothesis, &shown);
-                }
-                sorted.add(evidence, hypothesis, finding);
-            }
-        }
-    }
-    sorted.depends.extend(dependences(evidence));
-    sorted.depends.append(&mut by_object);
-    let pooled = contrasts_of(evidence).filter(|(.., over)| matches!(over, Over::All | Over::Within(_)));
-    sorted.fold(pooled.count(), level)
-}
-
-/// Of answers without a study.
-fn of_items(evidence: &Evidence<'_>, mut sorted: Sorted, level: f64) -> Sorted {
-    let (mut pooled, mut by_object) = (0, Vec::new());
-    for hypothesis in evidence.hypotheses {
-        let Target::Items { group, first, second, on } = &hypothesis.target else { continue };
-        let scope = format!("{}{}", names::on_object(on), names::in_group(evidence, group));
-        match on {
-            On::All => {
-                pooled += 1;
-                let mut finding = preference(evidence, hypothesis, first, second, &scope);
-                finding.text.push_str(&worths::beside(
-                    evidence,
-                    group,
-                    [first, second],
-                    hypothesis.differs(),
-                ));
-                let between = evidence.hypotheses.iter().filter(|of| {
-                    let same = matches!(&of.target, Target::Items { group: own, on: On::Difference(_), .. } if own == group);
-                    same && of.contrast == hypothesis.contrast && of.adjusted <= level
-                });
-                let clearest = between.min_by(|a, b| a.test.sign_flip.ln_p.total_cmp(&b.test.sign_flip.ln_p));
-                if let Some(clearest) = clearest {
-                    let shown = tested(clearest);
-                    finding.text.push_str(&format!(" The preference depends on the object ({shown})."));
-                }
-                sorted.add(evidence, hypothesis, finding);
-            }
-            On::Object(_) => {
-                by_object.push(Block::Finding(preference(evidence, hypothesis, first, second, &scope)));
-            }
-            On::Difference(_) => {}
-        }
-    }
-    sorted.depends.extend(dependences(evidence));
-    sorted.depends.append(&mut by_object);
-    sorted.fold(pooled, level)
-}
-
-/// What one test of a preference says, and what a liking for a side means for it.
-fn preference(
-    evidence: &Evidence<'_>,
-    hypothesis: &Hypothesis,
-    first: &str,
-    second: &str,
-    scope: &str,
-) -> Finding {
-    let mut finding = Finding::of_preference(hypothesis, first, second, scope);
-    if finding.standing == Standing::Holds {
-        finding.text.push_str(&tipping::sentence(evidence, hypothesis));
-    }
-    finding
-}
-
-/// Every contrast that was tested.
-fn contrasts_of<'a>(evidence: &'a Evidence<'_>) -> impl Iterator<Item = (&'a Hypothesis, [Level; 2], Over)> {
-    hypotheses::contrasts_of(evidence.hypotheses)
-}
-
-/// What shows that a preference depends on the object, in words; `None` if nothing does.
-pub(super) fn depends_on_object(evidence: &Evidence<'_>, levels: [Level; 2]) -> Option<String> {
-    let level = evidence.rules().level;
-    let found = hypotheses::depends_on_object(evidence.hypotheses, evidence.omnibus, levels, level)?;
-    Some(match found {
-        Dependence::Omnibus(of) => {
-            format!("Friedman's test over objects, {} after Holm's correction", p(of.adjusted))
-        }
-        Dependence::Difference(of) => tested(of),
-    })
-}
-
-/// What is said of all objects together where a preference depends on the object.
-fn caution(
-    study: &Study,
-    evidence: &Evidence<'_>,
-    finding: &mut Finding,
-    hypothesis: &Hypothesis,
-    shown: &str,
-) {
-    match finding.standing {
-        Standing::Holds => {
-            finding.text.push_str(&format!(" It depends on the object ({shown})."));
-            finding.text.push_str(&without_one_object(study, evidence, hypothesis));
-        }
-        Standing::Open | Standing::TooFew => {
-            finding.text.push_str(&format!(" The preference depends on the object ({shown})."));
-        }
-        _ => {}
-    }
 }
 
 /// Whether any one object is what an overall preference rests on.
@@ -241,15 +195,14 @@ fn without_one_object(study: &Study, evidence: &Evidence<'_>, hypothesis: &Hypot
                 text.push_str(&format!(" Without the {} it is the other way round ({p_rest}).", object.name));
             }
             (false, _) => {
-                let left = lower(&score(&rest, true));
-                text.push_str(&format!(" Without the {} it is not shown: {left}; {p_rest}.", object.name));
+                text.push_str(&format!(" Without the {} it is not shown ({p_rest}).", object.name));
             }
         }
     }
     text
 }
 
-fn levels_differ(study: &Study, evidence: &Evidence<'_>) -> Vec<Block> {
+fn levels_differ(study: &Study, evidence: &Evidence<'_>) -> Vec<Finding> {
     let level = evidence.rules().level;
     let shown = evidence.omnibus.iter().filter(|of| of.adjusted <= level);
     let text = |of: &Omnibus| {
@@ -264,132 +217,80 @@ fn levels_differ(study: &Study, evidence: &Evidence<'_>) -> Vec<Block> {
             p(of.test.p)
         ))
     };
-    shown.filter_map(text).map(|text| Block::Finding(Finding::new(Standing::Holds, text))).collect()
+    shown.filter_map(text).map(|text| Finding::new(Standing::Holds, text)).collect()
 }
 
-/// Interactions: one that holds is told with its parts, those that do not in one sentence.
-fn dependences(evidence: &Evidence<'_>) -> Vec<Block> {
-    let mut blocks = Vec::new();
-    let mut open: Vec<&Hypothesis> = Vec::new();
-    let mut untold = 0;
-    for hypothesis in evidence.hypotheses.iter().filter(|of| of.is_tested() && of.is_difference()) {
-        match hypothesis.conclusion() {
-            Conclusion::TooFew | Conclusion::NobodyLeans => {
-                untold += 1;
-                continue;
+/// A difference that was shown, with the two preferences that differ.
+fn difference(evidence: &Evidence<'_>, &(row, found): &Found<'_>) -> Finding {
+    let hypothesis = &evidence.hypotheses[row.hypothesis];
+    let [first, second] = &row.things;
+    let parts = parts(evidence, hypothesis).map_or(String::new(), |parts| {
+        let part = |(place, of): &(String, &Hypothesis)| {
+            let mut counts = of.test.counts.unwrap_or_default();
+            // As the names stand in the table.
+            if is_turned(evidence, row, of) {
+                counts.reverse();
             }
-            _ if !hypothesis.differs() => {
-                open.push(hypothesis);
-                continue;
-            }
-            _ => {}
-        }
-        blocks.extend(dependence(evidence, hypothesis).map(Block::Finding));
-    }
-    if let Some(smallest) = open.iter().map(|h| h.adjusted).min_by(f64::total_cmp) {
-        let mut names: Vec<String> =
-            open.iter().take(NAMED).map(|h| names::hypothesis(evidence, h)).collect();
-        if open.len() > NAMED {
-            names.push(format!("{} more", open.len() - NAMED));
-        }
-        let text = format!(
-            "For {} no difference was shown: {} (exact sign-flip tests, smallest corrected {}). That is not to say that there is \
-             none.",
-            match open.len() {
-                1 => "one other dependence that was looked for".into(),
-                n => format!("{n} other dependences that were looked for"),
-            },
-            list(&names),
-            p(smallest)
-        );
-        blocks.push(Block::Finding(Finding::new(Standing::Open, text)));
-    }
-    if untold > 0 {
-        let dependences = match untold {
-            1 => "1 dependence".into(),
-            n => format!("{n} dependences"),
+            format!("{}: {}", capital(place.trim_start()), against(counts))
         };
-        let text = format!(
-            "{dependences} could not have been shown: too few people lean one way or the other for any outcome to be significant."
-        );
-        blocks.push(Block::Finding(Finding::new(Standing::TooFew, text)));
-    }
-    blocks
-}
-
-/// Parts of a difference that are farther apart than this are about different things, see [`ScoreTest::apart`].
-const OTHER_OBJECTS: f64 = 0.1;
-
-/// A difference that holds, with the two preferences that differ. `None` if one of them was not tested.
-fn dependence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> Option<Finding> {
-    let ([first, second], [(here, own), (there, rest)]) = parts(evidence, hypothesis)?;
-    let part = |place: &str, test: &ScoreTest| {
-        format!(
-            "{}: {}, mean score {}",
-            capital(place.trim_start()),
-            against(test.counts.unwrap_or_default()),
-            number(test.mean, 2)
-        )
+        format!(" {}.", parts.iter().map(part).collect::<Vec<_>>().join(". "))
+    });
+    let holds = match found.is_limited(Limit::OtherObjects) {
+        true => {
+            " The two parts were asked about different objects, of most people or all, so that objects may make the difference"
+        }
+        false => " The difference holds",
     };
-    let within = match hypothesis.conclusion() {
-        Conclusion::DiffersWithinMargin => " It is smaller than the margin.",
-        _ => "",
-    };
-    let (standing, holds) = match hypothesis.test.apart > OTHER_OBJECTS {
-        true => (
-            Standing::NotAnswerable,
-            "The two parts were asked about different objects, of most people or all, so that objects may make the difference",
-        ),
-        false => (Standing::Holds, "The difference holds"),
-    };
-    let text = format!(
-        "How much {first} is preferred to {second} differs. {}. {}. {holds}: {}.{within}{}",
-        part(&here, own),
-        part(&there, rest),
-        tested(hypothesis),
-        over_all(hypothesis)
+    let mut text = format!(
+        "How much {first} is preferred to {second} differs.{parts}{holds} (adjusted {}).",
+        p(hypothesis.adjusted)
     );
-    let text = match standing {
-        Standing::Holds => text + &tipping::sentence(evidence, hypothesis),
-        _ => text,
-    };
-    Some(Finding::new(standing, text))
+    if found.is_limited(Limit::WithinMargin) {
+        text.push_str(" It is smaller than the margin.");
+    }
+    text.push_str(&finding::over_all(hypothesis, found));
+    if found.holds() {
+        text.push_str(&tipping::sentence(evidence, hypothesis));
+    }
+    Finding::new(Standing::of(found), text)
 }
 
-/// What two preferences are called, and where each of them is, with its test.
-type Parts<'a> = ([String; 2], [(String, &'a ScoreTest); 2]);
+/// Whether a row of the table shows what a hypothesis compares the other way round.
+fn is_turned(evidence: &Evidence<'_>, row: &Row, of: &Hypothesis) -> bool {
+    match (&of.target, evidence.study) {
+        (Target::Contrast { levels, .. }, Some(study)) => row.things[0] != names::level(study, levels[0]),
+        (Target::Items { first, .. }, _) => row.things[0] != *first,
+        _ => false,
+    }
+}
 
-/// The two preferences that a difference is of.
-fn parts<'a>(evidence: &'a Evidence<'_>, hypothesis: &Hypothesis) -> Option<Parts<'a>> {
-    let test_of = |target: Target| {
-        evidence.hypotheses.iter().find(|of| of.is_tested() && of.target == target).map(|of| &of.test)
-    };
-    match (&hypothesis.target, evidence.study) {
-        (Target::Contrast { levels, over }, Some(study)) => {
+/// The two preferences that a difference is of, and where each of them is; `None` if one of them was not tested.
+fn parts<'a>(evidence: &'a Evidence<'_>, hypothesis: &Hypothesis) -> Option<[(String, &'a Hypothesis); 2]> {
+    let of_target =
+        |target: Target| evidence.hypotheses.iter().find(|of| of.is_tested() && of.target == target);
+    let targets = match &hypothesis.target {
+        Target::Contrast { levels, over } => {
             let (a, b) = match *over {
                 Over::Difference(a, b) => (Over::Within(a), Over::Within(b)),
                 Over::ObjectDifference(a, b) => (Over::Object(a), Over::Object(b)),
                 _ => return None,
             };
-            let part =
-                |over| Some((names::over(study, over), test_of(Target::Contrast { levels: *levels, over })?));
-            Some((levels.map(|level| names::level(study, level)), [part(a)?, part(b)?]))
+            [a, b].map(|over| Target::Contrast { levels: *levels, over })
         }
-        (Target::Items { group, first, second, on: On::Difference(objects) }, _) => {
-            let part = |object: &String| {
-                let on = On::Object(object.clone());
-                let place = format!("{}{}", names::on_object(&on), names::in_group(evidence, group));
-                let [group, first, second] = [group, first, second].map(String::clone);
-                Some((place, test_of(Target::Items { group, first, second, on })?))
-            };
-            let [a, b] = objects;
-            Some(([first.clone(), second.clone()], [part(a)?, part(b)?]))
+        Target::Items { group, first, second, on: On::Difference(objects) } => {
+            objects.each_ref().map(|object| Target::Items {
+                group: group.clone(),
+                first: first.clone(),
+                second: second.clone(),
+                on: On::Object(object.clone()),
+            })
         }
-        _ => None,
-    }
-}
-
-fn lower(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_lowercase().chain(letters).collect())
+        _ => return None,
+    };
+    let part = |target: Target| {
+        let of = of_target(target)?;
+        Some((finding::scope(evidence, of), of))
+    };
+    let [a, b] = targets;
+    Some([part(a)?, part(b)?])
 }

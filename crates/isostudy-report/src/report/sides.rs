@@ -1,7 +1,7 @@
 //! What the design cannot answer: sides, other objects, other people.
 
 use super::evidence::Evidence;
-use super::{asked, names};
+use super::names;
 use crate::evidence_of_probes;
 use crate::statement::Block;
 use crate::statement::{Finding, Standing};
@@ -29,14 +29,7 @@ impl Probed {
     }
 }
 
-/// What stands before results: what people were asked, and that sides and methods go together where they do.
-pub(super) fn caution(evidence: &Evidence<'_>) -> Vec<Block> {
-    let asked = evidence.study.and_then(asked::instruction).map(|instruction| {
-        Block::Text(format!("Results are about what people were asked: {}", asked::ended(instruction)))
-    });
-    asked.into_iter().chain(sides_and_methods(evidence)).collect()
-}
-
+/// That sides and methods go together, where they do.
 pub(super) fn sides_and_methods(evidence: &Evidence<'_>) -> Vec<Block> {
     let sides = evidence.preferences.and_then(|of| of.sides.as_ref());
     if evidence.shown.is_empty() || !sides.is_some_and(Sides::go_with_items) {

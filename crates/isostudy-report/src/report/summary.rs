@@ -4,13 +4,13 @@
 use super::evidence::Evidence;
 use super::told::{self, named};
 use super::{SummaryLine, asked, limits};
-use crate::statement::Standing;
+use crate::standing::Standing;
 use crate::wants;
 use crate::words::{capital, counted, list, number};
 use isostudy_design::record::Purpose;
 use isostudy_design::{Factor, Method, Study};
-use isostudy_inference::decision::Goal;
-use isostudy_inference::glance::Row;
+use isostudy_inference::Preferences;
+use isostudy_inference::conclusions::Conclusion;
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
 use isostudy_inference::preference::two_factors;
@@ -18,8 +18,8 @@ use isostudy_inference::results::Results;
 
 /// `inputs` are those of a study.
 pub(super) fn lines(evidence: &Evidence<'_>, results: Option<&Results<'_>>) -> Vec<SummaryLine> {
-    let (rows, inputs) = (evidence.contrasts, results.map(|of| &of.inputs));
-    let of_meshes = match results.map(best) {
+    let inputs = results.map(|of| &of.inputs);
+    let of_meshes = match results.map(told::best) {
         Some(best) if evidence.shown.is_empty() && !best.is_empty() => best,
         _ => inputs.and_then(regular).into_iter().collect(),
     };
@@ -32,7 +32,7 @@ pub(super) fn lines(evidence: &Evidence<'_>, results: Option<&Results<'_>>) -> V
         ("How sure", sure(evidence)),
         ("Times", inputs.and_then(wants::busy)),
         ("Limits", Some(limits::short(evidence))),
-        ("Next", Some(next(evidence, rows))),
+        ("Next", Some(next(evidence))),
     ];
     let line = |(label, text): (&'static str, Option<String>)| text.map(|text| SummaryLine { label, text });
     lines.into_iter().filter_map(line).collect()
@@ -88,33 +88,6 @@ fn people(evidence: &Evidence<'_>) -> String {
     text
 }
 
-/// Who is the best at what most want of a mesh, a sentence a want.
-fn best(results: &Results<'_>) -> Vec<String> {
-    let (objects, picks) = (&results.decision.objects, wants::judged(results));
-    const WANTS: [Goal; 4] = [Goal::Fastest, Goal::Closest, Goal::SharpEdges, Goal::Regular];
-    let sentence = |goal: &Goal| {
-        let own: Vec<_> = picks.iter().filter(|pick| pick.want.goal == *goal).collect();
-        let is_everywhere = own.first()?.on.len() == objects.len() && objects.len() > 1;
-        let each = own.iter().map(|pick| {
-            let on: Vec<&str> = pick.on.iter().map(|best| best.object.name.as_str()).collect();
-            let on = if is_everywhere { "every object".into() } else { list(&on) };
-            // A tie has no winner.
-            let mut tied: Vec<String> =
-                pick.on.iter().flat_map(|best| &best.alike).map(ToString::to_string).collect();
-            tied.sort_unstable();
-            tied.dedup();
-            let is_everywhere_tied = pick.on.iter().all(|best| best.alike == pick.on[0].alike);
-            let some = if is_everywhere_tied { "" } else { "on some of these " };
-            match tied.len() {
-                0 => format!("{} on {on}", pick.method.label),
-                _ => format!("{} on {on}, {some}not distinguished from {}", pick.method.label, named(&tied)),
-            }
-        });
-        Some(format!("{}: {}.", capital(wants::words(*goal).heading), each.collect::<Vec<_>>().join("; ")))
-    };
-    WANTS.iter().filter_map(sentence).collect()
-}
-
 /// The method whose triangles are the most regular, over all objects.
 fn regular(inputs: &Inputs<'_>) -> Option<String> {
     let study = inputs.study;
@@ -155,9 +128,10 @@ fn sure(evidence: &Evidence<'_>) -> Option<String> {
     ))
 }
 
-fn next(evidence: &Evidence<'_>, rows: &[Row]) -> String {
-    let undecided =
-        rows.iter().filter(|row| matches!(row.standing, Standing::Open | Standing::TooFew)).count();
+fn next(evidence: &Evidence<'_>) -> String {
+    let concluded = evidence.preferences.map_or_else(Vec::new, Preferences::concluded);
+    let is_undecided = |of: &Conclusion| matches!(Standing::of(of), Standing::Open | Standing::TooFew);
+    let undecided = concluded.iter().filter(|(_, of)| is_undecided(of)).count();
     if evidence.shown.is_empty() {
         return "Ask people: isostudy design power says how many, and isostudy bundle makes what they see."
             .into();

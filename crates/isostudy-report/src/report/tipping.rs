@@ -23,7 +23,7 @@ pub(super) fn sentence(evidence: &Evidence<'_>, hypothesis: &Hypothesis) -> Stri
             format!(" How large a liking for a side would undo it cannot be said: {why}.")
         }
         Some(Undone::By(side, at)) => format!(
-            " A liking for the {} side of {} log-odds, which takes {} % of decided answers between equals, would undo it.",
+            " A liking for the {} side of {} log-odds ({} % between equals) would undo it.",
             names::side(side),
             number(at, 2),
             number(100.0 / (1.0 + (-at).exp()), 0)

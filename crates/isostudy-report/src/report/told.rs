@@ -1,8 +1,12 @@
 //! Conclusions in sentences: what the abstract finds, and the last lines of `analyse`.
 
-use crate::words::{counted, interval, list, number, percent};
+use super::evidence::participants;
+use crate::wants;
+use crate::words::{capital, counted, interval, list, number, people, percent};
 use isostudy_design::Study;
 use isostudy_inference::conclusions::{About, Conclusion, Conclusions, Verdict, Why};
+use isostudy_inference::decision::Goal;
+use isostudy_inference::glance::Row;
 use isostudy_inference::hypotheses::Target;
 use isostudy_inference::prediction::MetricPrediction;
 use isostudy_inference::{Preferences, Results};
@@ -10,7 +14,7 @@ use isostudy_inference::{Preferences, Results};
 /// Names in one sentence at most; the tables have all.
 const NAMED: usize = 6;
 
-/// What was found, a sentence a kind of conclusion, the most telling first; empty without answers.
+/// What was found in answers, a sentence per kind of conclusion, the most telling first; empty without answers.
 pub(crate) fn sentences(preferences: &Preferences<'_>, results: Option<&Results<'_>>) -> Vec<String> {
     if preferences.shown.is_empty() {
         return Vec::new();
@@ -45,27 +49,23 @@ impl Told<'_, '_> {
 
     /// The contrasts over all answers: those that hold, those that are equal, or that there are none.
     fn contrasts(&self) -> Option<String> {
-        let own: Vec<(&isostudy_inference::glance::Row, &Verdict)> = self
-            .all()
-            .iter()
-            .filter_map(|of| match of.about {
-                About::Contrast(place) => Some((&self.preferences.contrasts[place], &of.verdict)),
-                _ => None,
-            })
-            .collect();
+        let whole =
+            self.preferences.concluded().into_iter().filter(|(row, _)| row.is_whole && !row.is_difference);
+        let own: Vec<(&Row, &Verdict)> = whole.map(|(row, of)| (row, &of.verdict)).collect();
         if own.is_empty() {
             return None;
         }
         let that = |wanted: fn(&Verdict) -> bool| own.iter().filter(move |(_, verdict)| wanted(verdict));
+        let is_decidable = |of: &Verdict| !matches!(of, Verdict::NotJudged(Why::TooFew | Why::NobodyLeans));
         let holding: Vec<String> = that(|of| matches!(of, Verdict::Holds { .. }))
-            .map(|(row, _)| format!("{} ({})", row.pair, percent(row.share)))
+            .map(|(row, _)| format!("{} ({})", row.pair(), percent(row.share)))
             .collect();
         let equal: Vec<String> =
-            that(|of| *of == Verdict::Equal).map(|(row, _)| row.pair.replace(" over ", " and ")).collect();
+            that(|of| *of == Verdict::Equal).map(|(row, _)| row.things.join(" and ")).collect();
         let mut text = match holding.len() {
-            0 if that(|of| *of != Verdict::NotJudged(Why::TooFew)).next().is_none() => format!(
+            0 if that(is_decidable).next().is_none() => format!(
                 "No preference could be shown: {} gave {}, and no outcome of so few is significant.",
-                counted(self.people(), "person").replace("persons", "people"),
+                people(participants(&self.preferences.shown)),
                 counted(self.preferences.shown.len(), "answer")
             ),
             0 if !equal.is_empty() => String::new(),
@@ -73,14 +73,9 @@ impl Told<'_, '_> {
             _ => in_sentences("People", &holding),
         };
         if !equal.is_empty() {
-            text.push_str(&format!(" People like alike, within the margin: {}.", named(&equal)));
+            text.push_str(&format!(" Within the margin people like these alike: {}.", named(&equal)));
         }
         Some(text.trim().to_owned())
-    }
-
-    fn people(&self) -> usize {
-        let people = self.preferences.shown.iter().map(|of| of.participant());
-        people.collect::<std::collections::BTreeSet<_>>().len()
     }
 
     /// The scale with the most items.
@@ -101,7 +96,7 @@ impl Told<'_, '_> {
             _ => None,
         });
         let names: Vec<String> = own.filter_map(|of| between(study, of)).collect();
-        (!names.is_empty()).then(|| format!("This depends on the object: {}.", named(&names)))
+        (!names.is_empty()).then(|| format!("The preference depends on the object for {}.", named(&names)))
     }
 
     /// Of a study over all objects and on each; else of the scale with the most answers.
@@ -136,25 +131,20 @@ impl Told<'_, '_> {
     fn side(&self) -> Option<String> {
         let found = self.conclusions().about(About::Side)?;
         let text = "People favour a side. Whoever answers by the side hides what they prefer.";
-        matches!(found.verdict, Verdict::Holds { .. }).then(|| text.into())
-    }
-
-    fn people_differ(&self) -> bool {
-        let found = self.conclusions().about(About::People);
-        found.is_some_and(|of| matches!(of.verdict, Verdict::Holds { .. }))
+        found.holds().then(|| text.into())
     }
 
     fn spread(&self) -> Option<String> {
-        let spread = self.preferences.conclusions.spread.filter(|_| self.people_differ())?;
-        let scales = self.preferences.scales.iter().filter_map(|of| Some((of, of.scale.as_ref().ok()?)));
-        let (_, widest) = scales.max_by_key(|(of, _)| of.group.ballots.len())?;
-        let largest = widest.differences.iter().map(|of| of.log_odds.abs()).fold(0.0, f64::max);
-        let more =
-            if spread.sd > largest { " That is more than any two items differ by on average." } else { "" };
+        self.conclusions().about(About::People).filter(|of| of.holds())?;
+        let spread = self.preferences.conclusions.spread?;
+        let more = match spread.of.sd > spread.largest_difference {
+            true => " That is more than any two items differ by on average.",
+            false => "",
+        };
         Some(format!(
-            "People differ in taste: the difference of two items has a standard deviation between people of {} log-odds ({}).{more}",
-            number(spread.sd, 1),
-            interval(spread.interval, 1)
+            "People differ in taste. The difference of two items has a standard deviation between people of {} log-odds ({}).{more}",
+            number(spread.of.sd, 1),
+            interval(spread.of.interval, 1)
         ))
     }
 
@@ -164,7 +154,7 @@ impl Told<'_, '_> {
         let Verdict::Holds { held, of } = found.verdict else { return None };
         Some(format!(
             "Without the {} who broke a rule of screening, {held} of {} {} out otherwise.",
-            counted(any.people.len(), "person").replace("persons", "people"),
+            people(any.people.len()),
             counted(of, "contrast"),
             if held == 1 { "comes" } else { "come" }
         ))
@@ -197,6 +187,47 @@ impl Told<'_, '_> {
     }
 }
 
+/// Who is the best at what most want of a mesh, a sentence per want.
+pub(crate) fn best(results: &Results<'_>) -> Vec<String> {
+    const WANTS: [Goal; 4] = [Goal::Fastest, Goal::Closest, Goal::SharpEdges, Goal::Regular];
+    WANTS.iter().filter_map(|&goal| best_at(results, goal)).collect()
+}
+
+fn best_at(results: &Results<'_>, goal: Goal) -> Option<String> {
+    let picks = &results.decision.picks;
+    let mut parts: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut objects = 0;
+    for of in &results.conclusions.all {
+        let About::Take(pick, on) = of.about else { continue };
+        if picks[pick].want.goal != goal {
+            continue;
+        }
+        // A tie has no winner.
+        let text = match &of.verdict {
+            Verdict::Best { best, tied, .. } if tied.is_empty() => label(results.inputs.study, best),
+            Verdict::Best { is_everybody: true, .. } => "not decided".into(),
+            Verdict::Best { best, tied, .. } => {
+                let all: Vec<&String> = std::iter::once(best).chain(tied).collect();
+                format!("not distinguished are {}", named(&all))
+            }
+            _ => continue,
+        };
+        objects += 1;
+        let object = picks[pick].on[on].object.name.as_str();
+        match parts.iter_mut().find(|(own, _)| *own == text) {
+            Some((_, on)) => on.push(object),
+            None => parts.push((text, vec![object])),
+        }
+    }
+    let is_everywhere = |on: &[&str]| on.len() == objects && objects > 1;
+    let part = |(text, on): &(String, Vec<&str>)| match is_everywhere(on) {
+        true => format!("{text} on every object"),
+        false => format!("{text} on the {}", list(on)),
+    };
+    let parts: Vec<String> = parts.iter().map(part).collect();
+    (!parts.is_empty()).then(|| format!("{}: {}.", capital(wants::words(goal).heading), parts.join("; ")))
+}
+
 /// A sentence each, of so many as are named.
 fn in_sentences(who: &str, preferred: &[String]) -> String {
     let mut text = String::new();
@@ -215,7 +246,7 @@ fn top(verdict: &Verdict, name: impl Fn(&str) -> String) -> Option<String> {
     let Verdict::Best { best, tied, is_everybody } = verdict else { return None };
     Some(match tied.len() {
         0 => name(best),
-        _ if *is_everybody => "nobody, as none is shown to be liked less than the top of the scale".into(),
+        _ if *is_everybody => "not decided".into(),
         _ => format!("{}, not shown to differ from {}", name(best), named(tied)),
     })
 }

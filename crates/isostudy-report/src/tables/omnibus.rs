@@ -58,7 +58,7 @@ mod tests_of_the_paper {
             .map(|row| [&row[0], &row[1], &row[2], &row[3], &row[4], &row[6]].map(String::as_str).join(" "))
             .collect();
         for want in [
-            "clustering wins minus losses of each clustering 23.690 2 0.00001 18",
+            "clustering wins minus losses of each clustering 23.690 2 < 0.00001 18",
             "arrangement x clustering body-centred minus simple cubic, by clustering 9.969 2 0.00684 18",
             "object x arrangement body-centred minus simple cubic, by object 19.906 2 0.00005 18",
         ] {

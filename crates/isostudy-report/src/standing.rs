@@ -1,5 +1,7 @@
 //! What a statement is worth.
 
+use isostudy_inference::conclusions::{Conclusion, Verdict, Why};
+
 /// What a statement is worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Standing {
@@ -20,6 +22,18 @@ pub enum Standing {
 }
 
 impl Standing {
+    /// That of a conclusion.
+    pub fn of(conclusion: &Conclusion) -> Self {
+        match conclusion.verdict {
+            Verdict::Holds { .. } => Self::Holds,
+            Verdict::Equal => Self::Equal,
+            Verdict::Undecided | Verdict::NotJudged(Why::NobodyLeans) => Self::Open,
+            Verdict::NotJudged(Why::TooFew) => Self::TooFew,
+            Verdict::NotJudged(_) => Self::NotAnswerable,
+            Verdict::Best { .. } => Self::Noted,
+        }
+    }
+
     /// In a word or two.
     pub fn label(self) -> &'static str {
         match self {
