@@ -15,6 +15,7 @@ mod history;
 mod legend;
 mod marks;
 mod meshes;
+mod palette;
 mod power;
 mod prediction;
 mod preferences;
@@ -26,7 +27,7 @@ mod sweep;
 mod worths;
 
 use crate::figure::Figure;
-use draft::Unfinished;
+use draft::{Sheet, Unfinished};
 pub use edge_groups::{KindShare, TableQuality, edge_groups_figure};
 pub use error::FigureError;
 pub use history::history_figure;
@@ -36,12 +37,15 @@ use rayon::prelude::*;
 
 pub use sweep::sweep_figures;
 
+/// What a page shows first, of whatever there is: contrasts over all answers, else the fronts of one object.
+pub const OVERVIEW: &str = "overview";
+
 /// Every figure whose inputs are there, in the order of the paper's and then our own.
 ///
 /// # Errors
 /// If drawing fails, which is not to be expected.
 pub fn figures(results: &Results<'_>) -> Result<Vec<Figure>, FigureError> {
-    drafts(results).into_par_iter().map(Unfinished::finish).collect()
+    both(|sheet| drafts(results, sheet))
 }
 
 /// The figures that need nothing but answers: contrasts, worths and respondents.
@@ -49,24 +53,39 @@ pub fn figures(results: &Results<'_>) -> Result<Vec<Figure>, FigureError> {
 /// # Errors
 /// If drawing fails, which is not to be expected.
 pub fn figures_of_groups(preferences: &Preferences<'_>) -> Result<Vec<Figure>, FigureError> {
-    let drafts = [
-        glance::contrasts(&preferences.concluded()),
-        worths::draft(None, &preferences.scales),
-        respondents::draft(&preferences.majorities),
-    ];
-    drafts.into_iter().flatten().map(Unfinished::finish).collect()
+    both(|sheet| {
+        let drafts = [
+            glance::overview(&preferences.concluded(), sheet),
+            glance::contrasts(&preferences.concluded(), sheet),
+            worths::draft(None, &preferences.scales, sheet),
+            respondents::draft(&preferences.majorities, sheet),
+        ];
+        drafts.into_iter().flatten().collect()
+    })
 }
 
-fn drafts(results: &Results<'_>) -> Vec<Unfinished> {
+/// Drawn on both sheets.
+fn both(drafts: impl Fn(Sheet) -> Vec<Unfinished>) -> Result<Vec<Figure>, FigureError> {
+    let (wide, narrow) = (drafts(Sheet::Wide), drafts(Sheet::Narrow));
+    wide.into_par_iter().zip(narrow).map(|(wide, narrow)| wide.finish_with(narrow)).collect()
+}
+
+fn drafts(results: &Results<'_>, sheet: Sheet) -> Vec<Unfinished> {
     let inputs = &results.inputs;
     let mut drafts = Vec::new();
-    drafts.extend(meshes::triangles(inputs));
-    drafts.extend(meshes::pass_times(inputs));
-    drafts.extend(meshes::radius_ratios(inputs));
-    drafts.extend(meshes::aspect_ratios(inputs));
-    drafts.extend(stages::stage_times(inputs));
-    drafts.extend(distributions::aspect_ratios(inputs));
-    drafts.extend(fronts::draft(inputs.study, &results.decision));
+    let preferred = results.preferences.as_ref().filter(|_| inputs.answers.is_some());
+    let overview = match preferred.and_then(|found| glance::overview(&found.concluded(), sheet)) {
+        Some(contrasts) => Some(contrasts),
+        None => crate::telling::telling(inputs.study, inputs.meshes)
+            .and_then(|of| fronts::overview(inputs.study, &results.decision, of.object, sheet)),
+    };
+    drafts.extend(meshes::triangles(inputs, sheet));
+    drafts.extend(meshes::pass_times(inputs, sheet));
+    drafts.extend(meshes::radius_ratios(inputs, sheet));
+    drafts.extend(meshes::aspect_ratios(inputs, sheet));
+    drafts.extend(stages::stage_times(inputs, sheet));
+    drafts.extend(distributions::aspect_ratios(inputs, sheet));
+    drafts.extend(fronts::draft(inputs.study, &results.decision, sheet));
     if style::has_codes(inputs.study) {
         let found = " The table of methods says what the codes stand for.";
         drafts.iter_mut().for_each(|draft| draft.caption += found);
@@ -74,16 +93,21 @@ fn drafts(results: &Results<'_>) -> Vec<Unfinished> {
     if let Some(found) = crate::budgets::budgets(inputs) {
         drafts.iter_mut().for_each(|draft| draft.caption += &format!(" {found}"));
     }
+    if let Some(overview) = overview {
+        drafts.insert(0, overview);
+    }
     if let Some((answered, preferences)) = inputs.answers.zip(results.preferences.as_ref()) {
         let tally = &answered.tally;
-        drafts.extend(glance::contrasts(&preferences.concluded()));
-        drafts.push(answers::per_question(inputs.study, tally, answered.sides_differ()));
-        drafts.push(preferences::per_object(inputs.study, tally));
-        drafts.push(preferences::overall(inputs.study, tally));
-        drafts.extend(worths::draft(Some(inputs.study), &preferences.scales));
-        drafts.extend(respondents::draft(&preferences.majorities));
+        drafts.extend(glance::contrasts(&preferences.concluded(), sheet));
+        drafts.push(answers::per_question(inputs.study, tally, answered.sides_differ(), sheet));
+        drafts.push(preferences::per_object(inputs.study, tally, sheet));
+        drafts.push(preferences::overall(inputs.study, tally, sheet));
+        drafts.extend(worths::draft(Some(inputs.study), &preferences.scales, sheet));
+        drafts.extend(respondents::draft(&preferences.majorities, sheet));
         let prediction = results.prediction.as_ref();
-        drafts.extend(prediction.map(|found| prediction::draft(inputs.study, found, &answered.declared)));
+        drafts.extend(
+            prediction.map(|found| prediction::draft(inputs.study, found, &answered.declared, sheet)),
+        );
     }
     drafts
 }

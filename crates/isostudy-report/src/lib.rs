@@ -20,6 +20,7 @@ mod self_test;
 mod standing;
 pub mod statement;
 mod tables;
+mod telling;
 mod wants;
 mod without_study;
 pub mod words;
@@ -35,8 +36,8 @@ use isostudy_inference::{Answered, Inputs};
 pub use data::frames;
 pub use figure::Figure;
 pub use figures::{
-    FigureError, KindShare, TableQuality, edge_groups_figure, figures, figures_of_groups, history_figure,
-    power_figure, sweep_figures,
+    FigureError, KindShare, OVERVIEW, TableQuality, edge_groups_figure, figures, figures_of_groups,
+    history_figure, power_figure, sweep_figures,
 };
 pub use frames::{FrameError, LongFrame, answers_frame};
 pub use panel::{PANEL_SCHEMA, Panel, StageTime};
@@ -45,4 +46,5 @@ pub use self_test::self_test_tables;
 pub use tables::benchmark::of_objects as benchmark_of_objects;
 pub use tables::power::power_tables;
 pub use tables::tables;
+pub use telling::{Telling, telling};
 pub use without_study::answer_tables;

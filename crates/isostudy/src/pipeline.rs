@@ -90,12 +90,13 @@ impl<'a> Pipeline<'a> {
         let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
         let stills = self.stills()?;
         let timings = self.timings(&PlanLength::Short)?;
-        let pictures = self.pictures(&turntables)?;
+        let shown = self.shown_first(&meshes)?;
+        let pictures = self.pictures(&turntables, &shown)?;
         let chunks = self.chunk_times()?;
-        let tables = self.tables(&meshes, &timings, &chunks, &pictures)?;
-        let viewer = self.viewer(&meshes)?;
+        let tables = self.tables(&meshes, &timings, &chunks, &pictures, &shown)?;
+        let viewer = self.viewer(&meshes, &shown)?;
         let made = [turntables, pairs, forms, stills, pictures, chunks, vec![timings, tables]].concat();
-        self.page(&meshes, &made, viewer)?;
+        self.page(&meshes, &made, viewer, &shown)?;
         self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
         self.unexplained()
     }

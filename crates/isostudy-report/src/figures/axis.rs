@@ -1,5 +1,6 @@
 //! Value axes: where a value falls, and which values are marked.
 
+use super::canvas::text_width;
 use isostudy_table::digits::MINUS;
 
 /// Steps that an axis is cut into, at most; a last one begun counts as a whole.
@@ -33,6 +34,13 @@ impl Axis {
         let (first, last) = ((low / step + 1e-9).floor() as i64, (high / step - 1e-9).ceil() as i64);
         let ticks: Vec<f64> = (first..=last.max(first + 1)).map(|i| i as f64 * step).collect();
         Self { low: ticks[0], high: ticks[ticks.len() - 1], ticks, logarithmic: false }
+    }
+
+    /// From `low` to `high`, marked at the round steps between.
+    pub(super) fn within(low: f64, high: f64) -> Self {
+        let mut axis = Self::spanning(low, high);
+        axis.ticks.retain(|tick| (low..=high).contains(tick));
+        Self { low, high, ..axis }
     }
 
     /// From 0 to exactly `high`.
@@ -124,6 +132,24 @@ impl Axis {
         bottom + share * (top - bottom)
     }
 
+    /// The labels of an axis that runs from `left` to `right`, each with where its middle is: every one, or every second, third and
+    /// so on, such that none touches the next.
+    pub(super) fn labels_between(&self, left: f64, right: f64, em: f64) -> Vec<(f64, String)> {
+        let all: Vec<(f64, String)> = self
+            .ticks
+            .iter()
+            .zip(self.labels())
+            .map(|(&tick, text)| (self.place(tick, left, right), text))
+            .collect();
+        let half = |text: &str| text_width(text, em) / 2.0;
+        let fits = |step: &usize| {
+            let kept: Vec<&(f64, String)> = all.iter().step_by(*step).collect();
+            kept.windows(2).all(|two| two[0].0 + half(&two[0].1) + 0.6 * em <= two[1].0 - half(&two[1].1))
+        };
+        let step = (1..=all.len().max(1)).find(fits).unwrap_or(1);
+        all.into_iter().step_by(step).collect()
+    }
+
     /// The marks' labels: just the decimals they need, thousands set apart.
     pub(super) fn labels(&self) -> Vec<String> {
         let needs = |&tick: &f64| (0..6).find(|&d| round(tick, d) == round(tick, 9)).unwrap_or(6);
@@ -196,6 +222,30 @@ mod tests {
         let decades = Axis::decades(0.01, 100.0);
         assert!((decades.place(1.0, 100.0, 0.0) - 50.0).abs() < 1e-9);
         assert_eq!(Axis::whole(1, 4).labels(), ["1", "2", "3", "4"]);
+    }
+
+    #[test]
+    fn no_label_touches_the_next() {
+        let texts = |axis: &Axis, width: f64| {
+            axis.labels_between(0.0, width, 11.0).into_iter().map(|(_, text)| text).collect::<Vec<_>>()
+        };
+        let triangles = Axis::from_zero(101_720.0);
+        assert_eq!(texts(&triangles, 500.0).len(), 7);
+        // A third of a page.
+        assert_eq!(texts(&triangles, 227.0), ["0", "40,000", "80,000", "120,000"]);
+        assert_eq!(texts(&triangles, 20.0), ["0"]);
+        let places = triangles.labels_between(0.0, 227.0, 11.0);
+        for two in places.windows(2) {
+            let [(a, left), (b, right)] = two else { unreachable!() };
+            assert!(a + text_width(left, 11.0) / 2.0 < b - text_width(right, 11.0) / 2.0);
+        }
+    }
+
+    #[test]
+    fn an_axis_ends_where_it_is_told_to() {
+        let axis = Axis::within(-1.04, 1.1);
+        assert_eq!((axis.low, axis.high), (-1.04, 1.1));
+        assert_eq!(axis.labels(), ["\u{2212}1.0", "\u{2212}0.5", "0.0", "0.5", "1.0"]);
     }
 
     #[test]

@@ -2,7 +2,8 @@
 
 use super::axis::Axis;
 use super::canvas::{Align, BLACK, Canvas, WHITE, text_width};
-use super::legend;
+use super::draft::{Sheet, canvas_with_legend};
+use super::legend::{self, Swatch};
 use super::style::{Fill, GRID};
 use isostudy_statistics::interval::Interval;
 
@@ -54,12 +55,50 @@ pub(super) struct BarPanel {
     pub(super) cap: Option<f64>,
 }
 
-const EM: f64 = 11.0;
 /// Room for what stands round the plot.
-const LEFT: f64 = 80.0;
 const RIGHT: f64 = 10.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 40.0;
+/// How high a plot is on a narrow sheet.
+const PLOT: f64 = 200.0;
+
+/// Room for an axis and what it is called.
+pub(super) fn room_for_labels(sheet: Sheet, axis: &Axis) -> f64 {
+    let widest = axis.labels().iter().map(|text| text_width(text, sheet.em())).fold(0.0, f64::max);
+    sheet.length(80.0, widest + 32.0)
+}
+
+/// A canvas with a legend and rows of panels, each with its share of the width. On a narrow sheet they stand one below the other.
+pub(super) fn rows_of_panels(
+    sheet: Sheet,
+    legend: &[(Swatch, String)],
+    rows: Vec<Vec<(f64, BarPanel)>>,
+    row: f64,
+) -> Canvas {
+    if !sheet.is_narrow() {
+        let (mut canvas, top) = canvas_with_legend(sheet, legend, row * rows.len() as f64);
+        for (place, panels) in rows.into_iter().enumerate() {
+            let (mut x, y) = (0.0, top + row * place as f64);
+            for (share, panel) in panels {
+                let right = x + share * sheet.width();
+                panel.draw(&mut canvas, (x, y), (right, y + row));
+                x = right;
+            }
+        }
+        return canvas;
+    }
+    let width = sheet.width();
+    let panels = rows.into_iter().flatten().flat_map(|(_, panel)| panel.in_parts(sheet, width));
+    let panels: Vec<(f64, BarPanel)> =
+        panels.map(|panel| (TOP + PLOT + BOTTOM + panel.label_room(sheet, width), panel)).collect();
+    let (mut canvas, mut y) =
+        canvas_with_legend(sheet, legend, panels.iter().map(|(height, _)| height).sum());
+    for (height, panel) in panels {
+        panel.draw(&mut canvas, (0.0, y), (width, y + height));
+        y += height;
+    }
+    canvas
+}
 
 /// The largest value that any bar of these shows, published marks and intervals included.
 pub(super) fn largest(clusters: &[Cluster]) -> f64 {
@@ -85,12 +124,15 @@ impl BarPanel {
 
     /// Draws the panel into a rectangle. Labels that are wider than what they are of read upwards.
     pub(super) fn draw(&self, canvas: &mut Canvas, from: (f64, f64), to: (f64, f64)) {
-        let (left, right) = (from.0 + LEFT, to.0 - RIGHT);
-        let upwards = self.label_room(right - left);
+        let sheet = canvas.sheet();
+        let em = sheet.em();
+        let (left, right) = (from.0 + room_for_labels(sheet, &self.axis), to.0 - RIGHT);
+        let upwards = self.label_room(sheet, to.0 - from.0);
         let (top, bottom) = (from.1 + TOP, to.1 - BOTTOM - upwards);
         frame(canvas, &self.axis, &self.axis_label, (left, right), (bottom, top));
         if !self.heading.is_empty() {
-            canvas.text(&self.heading, ((left + right) / 2.0, from.1 + 19.0), 12.5, Align::Middle);
+            let at = ((left + right) / 2.0, from.1 + 19.0);
+            canvas.text_within(&self.heading, at, (from.0, to.0), 12.5);
         }
         let (wide, unit) = self.unit(right - left);
         let mut x = (left + right) / 2.0 - unit * wide / 2.0 + 0.8 * unit;
@@ -104,15 +146,16 @@ impl BarPanel {
                 }
                 let middle = (slot_start + x) / 2.0;
                 if upwards > 0.0 {
-                    let down = bottom + 8.0 + text_width(&slot.label, EM) / 2.0;
-                    canvas.text_upwards(&slot.label, (middle + 0.36 * EM, down), EM);
+                    let down = bottom + 8.0 + text_width(&slot.label, em) / 2.0;
+                    canvas.text_upwards(&slot.label, (middle + 0.36 * em, down), em);
                 } else {
-                    canvas.text(&slot.label, (middle, bottom + 14.0), EM, Align::Middle);
+                    canvas.text(&slot.label, (middle, bottom + 14.0), em, Align::Middle);
                 }
                 x += 0.35 * unit;
             }
             x -= 0.35 * unit;
-            canvas.text(&cluster.label, ((start + x) / 2.0, bottom + upwards + 31.0), 12.0, Align::Middle);
+            let at = ((start + x) / 2.0, bottom + upwards + 31.0);
+            canvas.text_within(&cluster.label, at, (from.0, to.0), sheet.large_em());
             x += 1.6 * unit;
         }
         if let Some(cap) = self.cap {
@@ -131,18 +174,53 @@ impl BarPanel {
         (wide, (room / wide).min(84.0))
     }
 
-    /// What labels take below the plot beyond one line: their length where they read upwards, else nothing.
-    fn label_room(&self, room: f64) -> f64 {
-        let (_, unit) = self.unit(room);
+    /// What labels take below the plot beyond one line: their length where they read upwards, else nothing. `width` is the panel's.
+    fn label_room(&self, sheet: Sheet, width: f64) -> f64 {
+        let em = sheet.em();
+        let (_, unit) = self.unit(self.plot_width(sheet, width));
         let slots = || self.clusters.iter().flat_map(|c| &c.slots);
-        let wide = |slot: &Slot| text_width(&slot.label, EM) > unit * (slot.bars.len() as f64 + 0.3);
+        let wide = |slot: &Slot| text_width(&slot.label, em) > unit * (slot.bars.len() as f64 + 0.3);
         if !slots().any(wide) {
             return 0.0;
         }
-        slots().map(|slot| text_width(&slot.label, EM)).fold(0.0, f64::max)
+        slots().map(|slot| text_width(&slot.label, em)).fold(0.0, f64::max)
+    }
+
+    fn plot_width(&self, sheet: Sheet, width: f64) -> f64 {
+        width - room_for_labels(sheet, &self.axis) - RIGHT
+    }
+
+    /// The panel, or its clusters in panels of their own on the same axis, or parts of clusters: such that labels below the plot do
+    /// not touch.
+    fn in_parts(self, sheet: Sheet, width: f64) -> Vec<Self> {
+        let room = self.plot_width(sheet, width);
+        let touch = |panel: &Self| {
+            let (_, unit) = panel.unit(room);
+            panel
+                .clusters
+                .iter()
+                .any(|c| c.slots.iter().any(|s| unit * (s.bars.len() as f64 + 0.35) < 1.15 * sheet.em()))
+        };
+        if !touch(&self) {
+            return vec![self];
+        }
+        let parts = |count: usize| -> Vec<Self> {
+            let part = |cluster: &Cluster, slots: &[Slot]| Self {
+                clusters: vec![Cluster { label: cluster.label.clone(), slots: slots.to_vec() }],
+                ..self.clone()
+            };
+            let of_cluster = |cluster: &Cluster| -> Vec<Self> {
+                let most = cluster.slots.len().div_ceil(count).max(1);
+                cluster.slots.chunks(most).map(|slots| part(cluster, slots)).collect()
+            };
+            self.clusters.iter().flat_map(of_cluster).collect()
+        };
+        let most = self.clusters.iter().map(|cluster| cluster.slots.len()).max().unwrap_or(1).max(1);
+        (1..=most).map(parts).find(|parts| !parts.iter().any(touch)).unwrap_or_else(|| vec![self])
     }
 
     fn bar(&self, canvas: &mut Canvas, bar: &Bar, (x0, x1): (f64, f64), (bottom, top): (f64, f64)) {
+        let em = canvas.sheet().em();
         let (x0, x1) = (x0 + 1.0, x1 - 1.0);
         let middle = (x0 + x1) / 2.0;
         let mut reached = 0.0;
@@ -155,12 +233,13 @@ impl BarPanel {
         if self.broken && reached > self.axis.high {
             tear(canvas, (x0, x1), top + 14.0);
             let value = super::axis::short(reached);
-            let wide = text_width(&value, EM - 1.0);
+            let em = canvas.sheet().length(em - 1.0, em);
+            let wide = text_width(&value, em);
             // Beside each other they would be one number.
             if wide > x1 - x0 + 2.0 {
-                canvas.text_upwards(value, (middle + 0.36 * EM, top - 5.0 - wide / 2.0), EM - 1.0);
+                canvas.text_upwards(value, (middle + 0.36 * em, top - 5.0 - wide / 2.0), em);
             } else {
-                canvas.text(value, (middle, top - 5.0), EM - 1.0, Align::Middle);
+                canvas.text(value, (middle, top - 5.0), em, Align::Middle);
             }
         }
         if let Some(Interval { low, high }) = bar.interval {
@@ -174,7 +253,7 @@ impl BarPanel {
             over = over.min(y - 3.0);
         }
         if let Some(label) = &bar.label {
-            canvas.text(label, (middle, over - 6.0), EM, Align::Middle);
+            canvas.text(label, (middle, over - 6.0), em, Align::Middle);
         }
     }
 }
@@ -197,14 +276,15 @@ pub(super) fn frame(
     (left, right): (f64, f64),
     (bottom, top): (f64, f64),
 ) {
+    let em = canvas.sheet().em();
     let mut widest: f64 = 0.0;
     for (&tick, text) in axis.ticks.iter().zip(axis.labels()) {
         let y = axis.place(tick, bottom, top);
         canvas.line(vec![(left, y), (right, y)], GRID, 0.5);
-        widest = widest.max(text_width(&text, EM));
-        canvas.text(text, (left - 6.0, y + 0.36 * EM), EM, Align::End);
+        widest = widest.max(text_width(&text, em));
+        canvas.text(text, (left - 6.0, y + 0.36 * em), em, Align::End);
     }
     if !label.is_empty() {
-        canvas.text_upwards(label, (left - widest - 13.0, (bottom + top) / 2.0), 12.0);
+        canvas.text_upwards(label, (left - widest - 13.0, (bottom + top) / 2.0), canvas.sheet().large_em());
     }
 }

@@ -4,7 +4,9 @@
 //! plotters backends do not agree on text: what a font size means and where the baseline falls differ, and neither is
 //! what a layout needs. Shapes therefore give the em and the baseline, and the painter translates.
 
+use super::draft::Sheet;
 use super::error::FigureError;
+use super::palette;
 use plotters::backend::{BitMapBackend, SVGBackend};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -41,18 +43,20 @@ enum Shape {
 /// Shapes in units; the origin is the upper left corner.
 #[derive(Debug, Clone)]
 pub(super) struct Canvas {
+    sheet: Sheet,
     width: f64,
     height: f64,
     shapes: Vec<Shape>,
 }
 
 impl Canvas {
-    pub(super) fn new(width: f64, height: f64) -> Self {
-        Self { width, height, shapes: Vec::new() }
+    /// As wide as the sheet.
+    pub(super) fn on(sheet: Sheet, height: f64) -> Self {
+        Self { sheet, width: sheet.width(), height, shapes: Vec::new() }
     }
 
-    pub(super) fn width(&self) -> f64 {
-        self.width
+    pub(super) fn sheet(&self) -> Sheet {
+        self.sheet
     }
 
     pub(super) fn rectangle(&mut self, from: (f64, f64), to: (f64, f64), colour: Colour) {
@@ -83,6 +87,21 @@ impl Canvas {
         self.text_in(text, at, em, align, BLACK);
     }
 
+    /// Text around a middle, moved where it would reach beyond `left` or `right`.
+    pub(super) fn text_within(
+        &mut self,
+        text: impl Into<String>,
+        (middle, baseline): (f64, f64),
+        (left, right): (f64, f64),
+        em: f64,
+    ) {
+        let text = text.into();
+        // Positions are rounded to half a unit.
+        let half = text_width(&text, em) / 2.0 + 0.5;
+        let middle = middle.min(right - half).max(left + half);
+        self.text(text, (middle, baseline), em, Align::Middle);
+    }
+
     pub(super) fn text_in(
         &mut self,
         text: impl Into<String>,
@@ -110,7 +129,8 @@ impl Canvas {
         // Same view box, shown at half its size.
         let (w, h) = self.pixels();
         let half = format!("<svg width=\"{}\" height=\"{}\"", self.width, self.height);
-        Ok(svg.replacen(&format!("<svg width=\"{w}\" height=\"{h}\""), &half, 1))
+        let svg = svg.replacen(&format!("<svg width=\"{w}\" height=\"{h}\""), &half, 1);
+        Ok(palette::with_dark_colours(svg))
     }
 
     /// The drawing as a PNG file's bytes, 8-bit RGB.
@@ -209,6 +229,21 @@ pub(super) fn text_width(text: &str, em: f64) -> f64 {
     f64::from(width) * em / measured_at
 }
 
+/// A text in lines that are no wider than `room`, unless a word is.
+pub(super) fn wrapped(text: &str, em: f64, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), em) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.into()),
+        }
+    }
+    lines
+}
+
 fn register() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -222,6 +257,58 @@ fn drawing_error(figure: &str, message: String) -> FigureError {
 
 #[cfg(test)]
 impl Canvas {
+    /// The smallest letters on it.
+    pub(super) fn least_em(&self) -> f64 {
+        let em = |shape: &Shape| match shape {
+            Shape::Text { em, .. } => *em,
+            _ => f64::INFINITY,
+        };
+        self.shapes.iter().map(em).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far shapes reach to the left and to the right.
+    pub(super) fn reach(&self) -> [f64; 2] {
+        let ends = |shape: &Shape| match shape {
+            Shape::Rectangle { from, to, .. } => vec![from.0, to.0],
+            Shape::Polygon { points, .. } | Shape::Line { points, .. } => {
+                points.iter().map(|at| at.0).collect()
+            }
+            Shape::Text { .. } => Vec::new(),
+        };
+        let all = self.shapes.iter().flat_map(ends);
+        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+    }
+
+    /// Two texts one of which stands on the other, both upright or both reading upwards.
+    pub(super) fn texts_on_texts(&self) -> Vec<(String, String)> {
+        let room = |shape: &Shape| {
+            let Shape::Text { text, at, em, align, upwards, .. } = shape else { return None };
+            let width = text_width(text, *em);
+            let start = match align {
+                Align::Start => 0.0,
+                Align::Middle => -width / 2.0,
+                Align::End => -width,
+            };
+            // Letters without descenders: those of a line above may touch its room.
+            let high = 0.7 * em;
+            let room = match upwards {
+                true => [at.0 - high, at.0, at.1 + start, at.1 + start + width],
+                false => [at.0 + start, at.0 + start + width, at.1 - high, at.1],
+            };
+            Some((text.clone(), room))
+        };
+        let all: Vec<(String, [f64; 4])> = self.shapes.iter().filter_map(room).collect();
+        let mut found = Vec::new();
+        for (i, (one, a)) in all.iter().enumerate() {
+            for (other, b) in &all[i + 1..] {
+                if a[0] < b[1] && b[0] < a[1] && a[2] < b[3] && b[2] < a[3] {
+                    found.push((one.clone(), other.clone()));
+                }
+            }
+        }
+        found
+    }
+
     /// Texts that stick out of the drawing on any side.
     pub(super) fn texts_outside(&self) -> Vec<String> {
         let sticks_out = |shape: &Shape| {

@@ -1,9 +1,9 @@
 //! Distributions of the two aspect ratios: a box a configuration.
 
 use super::axis::Axis;
-use super::bars::frame;
+use super::bars::{frame, room_for_labels};
 use super::canvas::{Align, BLACK, Canvas, text_width};
-use super::draft::{Unfinished, WIDTH, canvas_with_legend, in_rows};
+use super::draft::{Sheet, Unfinished, canvas_with_legend};
 use super::style;
 use super::style::Fill;
 use isostudy_design::record::{Distribution, MeshRecord, Purpose};
@@ -22,21 +22,21 @@ const MEASURES: [Measure; 2] = [
     ("published ratio", |m| &m.quality.published_aspect_ratio),
 ];
 
-pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
+pub(super) fn aspect_ratios(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinished> {
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
     if meshes.is_empty() {
         return None;
     }
     let objects: Vec<usize> = (0..inputs.study.file.objects.len()).collect();
-    let blocks = in_rows(&objects);
-    let (mut canvas, top) = canvas_with_legend(&[], 2.0 * ROW * blocks.len() as f64);
+    let blocks = sheet.in_rows(&objects);
+    let (mut canvas, top) = canvas_with_legend(sheet, &[], 2.0 * ROW * blocks.len() as f64);
     let mut y = top;
     for block in blocks {
         for (label, of) in MEASURES {
             // One scale a row, so that objects can be compared.
             let q95 = meshes.in_order().map(|(_, mesh)| of(mesh).q95).fold(1.0, f64::max);
             let axis = Axis::logarithmic(q95);
-            let width = WIDTH / block.len() as f64;
+            let width = sheet.width() / block.len() as f64;
             for (i, &object) in block.iter().enumerate() {
                 let boxes: Vec<(MethodId, Option<&Distribution>)> = inputs
                     .study
@@ -68,9 +68,10 @@ fn panel(
     from: (f64, f64),
     to: (f64, f64),
 ) {
-    let (left, right) = (from.0 + 80.0, to.0 - 10.0);
+    let em = canvas.sheet().em();
+    let (left, right) = (from.0 + room_for_labels(canvas.sheet(), axis), to.0 - 10.0);
     let name = |method: MethodId| style::name(study, method);
-    let labels = boxes.iter().map(|(method, _)| text_width(&name(*method), 11.0)).fold(0.0, f64::max);
+    let labels = boxes.iter().map(|(method, _)| text_width(&name(*method), em)).fold(0.0, f64::max);
     let (top, bottom) = (from.1 + 16.0, to.1 - 34.0 - labels);
     frame(canvas, axis, label, (left, right), (bottom, top));
     let pitch = (right - left) / boxes.len() as f64;
@@ -78,14 +79,19 @@ fn panel(
     for (i, (method, distribution)) in boxes.iter().enumerate() {
         let x = left + pitch * (i as f64 + 0.5);
         let label = name(*method);
-        let down = bottom + 8.0 + text_width(&label, 11.0) / 2.0;
-        canvas.text_upwards(label, (x + 4.0, down), 11.0);
+        let down = bottom + 8.0 + text_width(&label, em) / 2.0;
+        canvas.text_upwards(label, (x + 4.0, down), em);
         let Some(d) = distribution else { continue };
         let heights = [d.q05, d.q25, d.median, d.q75, d.q95].map(|value| axis.place(value, bottom, top));
         draw_box(canvas, (x, half), heights, style::method(study, *method));
     }
     canvas.line(vec![(left, bottom), (right, bottom)], BLACK, 1.0);
-    canvas.text(object, ((left + right) / 2.0, bottom + labels + 22.0), 12.0, Align::Middle);
+    canvas.text(
+        object,
+        ((left + right) / 2.0, bottom + labels + 22.0),
+        canvas.sheet().large_em(),
+        Align::Middle,
+    );
 }
 
 /// A box with its whiskers: heights of the lower whisker's end, the lower quartile, the median, the upper quartile and the upper

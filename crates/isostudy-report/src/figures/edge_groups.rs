@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::bars::frame;
 use super::canvas::{Align, BLACK, Canvas, text_width};
 use super::distributions::draw_box;
-use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::draft::{Sheet, Unfinished, canvas_with_legend};
 use super::error::FigureError;
 use super::legend::Swatch;
 use super::style::{Fill, LEFT, RIGHT};
@@ -56,13 +56,13 @@ fn draft(tables: &[TableQuality], surfaces: &[String], worst: usize) -> Unfinish
         (Swatch::Area(good), "a kind of triangle".to_owned()),
         (Swatch::Area(bad), "a kind whose edges are a path in space".to_owned()),
     ];
-    let (mut canvas, top) = canvas_with_legend(&legend, ROW * (1 + rows.len()) as f64);
+    let (mut canvas, top) = canvas_with_legend(Sheet::Wide, &legend, ROW * (1 + rows.len()) as f64);
     let boxes = tables.iter().map(|table| (table.name.as_str(), &table.ratios[..], good)).collect();
     let panel =
         Panel { heading: "all triangles".into(), label: "radius ratio", boxes, whiskers: [0.05, 0.95] };
-    panel.draw(&mut canvas, (0.0, top), (WIDTH, top + ROW));
+    panel.draw(&mut canvas, (0.0, top), (Sheet::Wide.width(), top + ROW));
     for (row, tables) in rows.into_iter().enumerate() {
-        let (y, width) = (top + ROW * (1 + row) as f64, WIDTH / PER_ROW as f64);
+        let (y, width) = (top + ROW * (1 + row) as f64, Sheet::Wide.width() / PER_ROW as f64);
         for (column, table) in tables.iter().enumerate() {
             let x = width * column as f64;
             let fill = |kind: &KindShare| if kind.is_bad { bad } else { good };

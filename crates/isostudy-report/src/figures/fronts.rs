@@ -1,8 +1,9 @@
 //! Pareto fronts: a row an object, a panel two quantities; who is beaten in both lies behind the line.
 
+use super::OVERVIEW;
 use super::axis::Axis;
 use super::canvas::{BLACK, Colour};
-use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::draft::{Sheet, Unfinished, canvas_with_legend};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
@@ -12,9 +13,11 @@ use isostudy_inference::decision::{Axes, Front, FrontPoint, LEAST_ERROR, ObjectC
 use isostudy_inference::results::Decision;
 
 const ROW: f64 = 330.0;
+/// An axis that reaches farther than so many times is logarithmic.
+const DECADE: f64 = 10.0;
 
 /// Nothing where no object has two methods to choose from.
-pub(super) fn draft(study: &Study, decision: &Decision<'_>) -> Option<Unfinished> {
+pub(super) fn draft(study: &Study, decision: &Decision<'_>, sheet: Sheet) -> Option<Unfinished> {
     let rows: Vec<(&str, &[Front])> =
         decision.each().map(|(of, fronts)| (of.object.name.as_str(), fronts)).collect();
     let shown: Vec<Axes> = Axes::ALL
@@ -24,23 +27,55 @@ pub(super) fn draft(study: &Study, decision: &Decision<'_>) -> Option<Unfinished
     if shown.is_empty() {
         return None;
     }
-    let (mut canvas, top) = canvas_with_legend(&legend(study, &decision.objects), ROW * rows.len() as f64);
-    let width = WIDTH / shown.len() as f64;
+    let columns = sheet.columns(shown.len());
+    let lines = shown.len() / columns;
+    let height = ROW * (rows.len() * lines) as f64;
+    let (mut canvas, top) = canvas_with_legend(sheet, &legend(study, &decision.objects), height);
+    let width = sheet.width() / columns as f64;
     for (r, (object, fronts)) in rows.iter().enumerate() {
-        for (column, axes) in shown.iter().enumerate() {
+        for (place, axes) in shown.iter().enumerate() {
             let Some(front) = fronts.iter().find(|front| front.axes == *axes) else { continue };
-            let (x, y) = (width * column as f64, top + ROW * r as f64);
+            let x = width * (place % columns) as f64;
+            let y = top + ROW * (r * lines + place / columns) as f64;
             panel(study, object, front).draw(&mut canvas, (x, y), (x + width, y + ROW));
         }
     }
     let mut caption: String = "Each method on each object, two quantities at a time; better is to the left, and down for error, up for preference. The line \
-                   joins the methods that no other method beats in both quantities. Their codes stand beside them. Thin lines are \
+                   joins the methods that no other method beats in both quantities. Codes stand beside the marks, as far as there is room. Thin lines are \
                    intervals at 95 %. The table of fronts has every value, and says which method beats which."
         .into();
     if decision.objects.iter().any(ObjectCandidates::has_least_error) {
         caption.push_str(&format!(" A mean error below {LEAST_ERROR} is drawn there."));
     }
     Some(Unfinished { name: "fronts", caption, canvas })
+}
+
+/// The fronts of the object on which methods differ most: without a legend, since their codes stand beside the marks. On a narrow
+/// sheet the first front alone. `object` is its place among the study's.
+pub(super) fn overview(
+    study: &Study,
+    decision: &Decision<'_>,
+    object: usize,
+    sheet: Sheet,
+) -> Option<Unfinished> {
+    let id = &study.file.objects.get(object)?.id;
+    let (of, fronts) = decision.each().find(|(of, fronts)| of.object.id == *id && !fronts.is_empty())?;
+    let shown = &fronts[..if sheet.is_narrow() { 1 } else { fronts.len() }];
+    let width = sheet.width() / shown.len() as f64;
+    let (mut canvas, top) = canvas_with_legend(sheet, &[], ROW);
+    for (column, front) in shown.iter().enumerate() {
+        let x = width * column as f64;
+        panel(study, &of.object.name, front).draw(&mut canvas, (x, top), (x + width, top + ROW));
+    }
+    let mut caption = format!(
+        "The methods on one object, the {}. Better is to the left, and down for error. The line joins the methods that no other \
+         method beats in both quantities. Thin lines are intervals at 95 %.",
+        of.object.name
+    );
+    if decision.each().filter(|(_, fronts)| !fronts.is_empty()).count() > 1 {
+        caption.push_str(" The figure of fronts has every object.");
+    }
+    Some(Unfinished { name: OVERVIEW, caption, canvas })
 }
 
 /// In its colour too, since marks lie close together.
@@ -68,11 +103,13 @@ fn panel(study: &Study, object: &str, front: &Front) -> Scatter {
     };
     let ((x_low, x_high), (y_low, y_high)) = (ends(0, unit), ends(1, 1.0));
     let x = match front.axes {
+        // Where one method has many more triangles than the rest, they would stand on each other.
+        Axes::TrianglesError if x_high > DECADE * x_low => Axis::decades(x_low, x_high),
         Axes::TrianglesError => Axis::spanning(0.95 * x_low, 1.02 * x_high),
         _ => Axis::decades(x_low, x_high),
     };
     let y = match front.axes {
-        Axes::TimePreference => Axis::spanning(y_low - 0.1, y_high + 0.1),
+        Axes::TimePreference => Axis::within(y_low - 0.1, y_high + 0.1),
         _ => Axis::decades(y_low, y_high),
     };
     // Intervals, under the marks; the axis cuts those without an end.
@@ -112,6 +149,12 @@ fn panel(study: &Study, object: &str, front: &Front) -> Scatter {
         lines,
         dashed: None,
         marks: front.points.iter().map(|point| (at(point), mark(study, point.method))).collect(),
-        names: line.iter().map(|point| (at(point), point.method.to_string())).collect(),
+        // Those on the line first: where there is not room for all, theirs are read.
+        names: line
+            .iter()
+            .copied()
+            .chain(front.points.iter().filter(|point| point.standing != Standing::OnFront))
+            .map(|point| (at(point), point.method.to_string()))
+            .collect(),
     }
 }

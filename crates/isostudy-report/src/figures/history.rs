@@ -1,7 +1,7 @@
 //! Runs that were kept: totals from one to the next.
 
 use super::axis::Axis;
-use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::draft::{Sheet, Unfinished, canvas_with_legend};
 use super::error::FigureError;
 use super::legend::Swatch;
 use super::marks::Mark;
@@ -41,7 +41,7 @@ fn draft(steps: &[Step]) -> Option<Unfinished> {
         (Swatch::Line(style::IDEAL), "a configuration".to_owned()),
         (Swatch::Dashes, "as the first".to_owned()),
     ];
-    let (mut canvas, top) = canvas_with_legend(&legend, HEIGHT);
+    let (mut canvas, top) = canvas_with_legend(Sheet::Wide, &legend, HEIGHT);
     let panel = Scatter {
         heading: "Median totals over those of the first run".into(),
         labels: ("run, in the order kept".into(), "over the first".into()),
@@ -52,7 +52,7 @@ fn draft(steps: &[Step]) -> Option<Unfinished> {
         marks: means.into_iter().map(|at| (at, mark)).collect(),
         names: Vec::new(),
     };
-    panel.draw(&mut canvas, (0.0, top), (WIDTH, top + HEIGHT));
+    panel.draw(&mut canvas, (0.0, top), (Sheet::Wide.width(), top + HEIGHT));
     let caption = "Runs that were kept. No verdicts: `isostudy bench compare` gives those.".into();
     Some(Unfinished { name: "history", caption, canvas })
 }

@@ -1,6 +1,7 @@
 //! Legends: swatches with names, in as many rows as they need.
 
-use super::canvas::{Align, BLACK, Canvas, Colour, WHITE, text_width};
+use super::canvas::{Align, BLACK, Canvas, Colour, WHITE, text_width, wrapped};
+use super::draft::Sheet;
 use super::marks::Mark;
 use super::style::Fill;
 
@@ -20,19 +21,23 @@ pub(super) enum Swatch {
     Line(Colour),
 }
 
-const EM: f64 = 12.0;
 const ROW: f64 = 20.0;
+/// From a swatch's left edge to its name, and from a name to the next swatch.
+const SWATCH: f64 = 24.0;
+const GAP: f64 = 22.0;
 
-/// Height of the legend on a canvas of this width.
-pub(super) fn height(entries: &[(Swatch, String)], width: f64) -> f64 {
-    place(entries, width).last().map_or(0.0, |&(_, row)| (row + 1) as f64 * ROW) + 6.0
+/// Height of the legend on a part of a sheet of this width.
+pub(super) fn height(entries: &[(Swatch, String)], sheet: Sheet, width: f64) -> f64 {
+    place(entries, sheet, width).iter().map(|at| (at.row + at.lines.len()) as f64 * ROW).fold(0.0, f64::max)
+        + 6.0
 }
 
 /// Draws the legend from `left`, its upper edge at `top`.
 pub(super) fn draw(canvas: &mut Canvas, entries: &[(Swatch, String)], left: f64, top: f64) {
-    let places = place(entries, canvas.width() - left);
-    for ((swatch, name), (x, row)) in entries.iter().zip(places) {
-        let (x, middle) = (left + x, top + ROW * (row as f64 + 0.5));
+    let sheet = canvas.sheet();
+    let em = sheet.large_em();
+    for ((swatch, _), at) in entries.iter().zip(place(entries, sheet, sheet.width() - left)) {
+        let (x, middle) = (left + at.x, top + ROW * (at.row as f64 + 0.5));
         match swatch {
             Swatch::Area(fill) => fill.paint(canvas, (x, middle - 6.0), (x + 18.0, middle + 6.0)),
             Swatch::Diamond => diamond(canvas, (x + 9.0, middle)),
@@ -41,7 +46,10 @@ pub(super) fn draw(canvas: &mut Canvas, entries: &[(Swatch, String)], left: f64,
             Swatch::Line(colour) => canvas.line(vec![(x, middle), (x + 18.0, middle)], *colour, 1.5),
             Swatch::Dashes => canvas.dashes(x, x + 18.0, middle, BLACK),
         }
-        canvas.text(name, (x + 24.0, middle + 0.36 * EM), EM, Align::Start);
+        for (line, text) in at.lines.into_iter().enumerate() {
+            let baseline = middle + ROW * line as f64 + 0.36 * em;
+            canvas.text(text, (x + SWATCH, baseline), em, Align::Start);
+        }
     }
 }
 
@@ -63,17 +71,26 @@ pub(super) fn whisker(canvas: &mut Canvas, x: f64, y0: f64, y1: f64) {
     }
 }
 
-/// Offset from the left and row of each entry.
-fn place(entries: &[(Swatch, String)], width: f64) -> Vec<(f64, usize)> {
-    let (mut x, mut row) = (0.0, 0);
+/// Where an entry stands: its offset from the left, its first row, and the lines of its name.
+struct Place {
+    x: f64,
+    row: usize,
+    lines: Vec<String>,
+}
+
+fn place(entries: &[(Swatch, String)], sheet: Sheet, width: f64) -> Vec<Place> {
+    let em = sheet.large_em();
+    let (mut x, mut row, mut rows) = (0.0, 0, 1);
     let mut places = Vec::new();
     for (_, name) in entries {
-        let needs = 24.0 + text_width(name, EM) + 22.0;
-        if x > 0.0 && x + needs - 22.0 > width {
-            (x, row) = (0.0, row + 1);
+        let lines = wrapped(name, em, width - SWATCH);
+        let needs = SWATCH + lines.iter().map(|line| text_width(line, em)).fold(0.0, f64::max);
+        if x > 0.0 && x + needs > width {
+            (x, row, rows) = (0.0, row + rows, 1);
         }
-        places.push((x, row));
-        x += needs;
+        rows = rows.max(lines.len());
+        places.push(Place { x, row, lines });
+        x += needs + GAP;
     }
     places
 }

@@ -3,8 +3,15 @@
 use super::canvas::{BLACK, Canvas, Colour, WHITE};
 
 /// Shapes, in the order they are given out.
-const SHAPES: [Shape; 6] =
-    [Shape::Circle, Shape::Triangle, Shape::Square, Shape::Diamond, Shape::Down, Shape::Cross];
+const SHAPES: [Shape; 7] = [
+    Shape::Circle,
+    Shape::Triangle,
+    Shape::Square,
+    Shape::Diamond,
+    Shape::Down,
+    Shape::Cross,
+    Shape::Hourglass,
+];
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Shape {
@@ -14,6 +21,7 @@ enum Shape {
     Diamond,
     Down,
     Cross,
+    Hourglass,
 }
 
 /// What is inside a shape.
@@ -36,7 +44,7 @@ pub(super) struct Mark {
 }
 
 impl Mark {
-    /// The mark of the n-th of several things; after six they begin again.
+    /// The mark of the n-th of several things; after seven they begin again.
     pub(super) fn nth(n: usize, filled: bool) -> Self {
         Self::of(n, if filled { Filling::Full } else { Filling::Hollow })
     }
@@ -63,6 +71,9 @@ impl Mark {
                 Shape::Square => at(&[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
                 Shape::Diamond => at(&[(0.0, -1.25), (1.25, 0.0), (0.0, 1.25), (-1.25, 0.0)]),
                 Shape::Down => at(&[(0.0, 1.2), (1.1, -0.8), (-1.1, -0.8)]),
+                Shape::Hourglass => {
+                    at(&[(-1.0, -1.1), (1.0, -1.1), (0.45, 0.0), (1.0, 1.1), (-1.0, 1.1), (-0.45, 0.0)])
+                }
                 Shape::Cross => at(&[
                     (-0.35, -1.1),
                     (0.35, -1.1),

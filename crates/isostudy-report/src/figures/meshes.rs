@@ -1,8 +1,8 @@
 //! The paper's grouped bar charts: triangles, pass times, aspect ratio.
 
 use super::axis::Axis;
-use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
-use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::bars::{Bar, BarPanel, Cluster, Slot, largest, rows_of_panels};
+use super::draft::{Sheet, Unfinished};
 use super::legend::Swatch;
 use super::style;
 use isostudy_design::ConfigurationId;
@@ -43,9 +43,14 @@ fn clusters(
     study.file.objects.iter().map(cluster).collect()
 }
 
-fn draft(name: &'static str, caption: String, panel: &BarPanel, legend: &[(Swatch, String)]) -> Unfinished {
-    let (mut canvas, top) = canvas_with_legend(legend, HEIGHT);
-    panel.draw(&mut canvas, (0.0, top), (WIDTH, top + HEIGHT));
+fn draft(
+    sheet: Sheet,
+    name: &'static str,
+    caption: String,
+    panel: BarPanel,
+    legend: &[(Swatch, String)],
+) -> Unfinished {
+    let canvas = rows_of_panels(sheet, legend, vec![vec![(1.0, panel)]], HEIGHT);
     Unfinished { name, caption, canvas }
 }
 
@@ -72,17 +77,17 @@ fn has_published(clusters: &[Cluster]) -> bool {
     clusters.iter().flat_map(|c| &c.slots).flat_map(|s| &s.bars).any(|bar| bar.published.is_some())
 }
 
-pub(super) fn triangles(inputs: &Inputs<'_>) -> Option<Unfinished> {
+pub(super) fn triangles(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinished> {
     let clusters = mesh_clusters(inputs, |m| Some(m.counts.triangles as f64), |p| p.triangles as f64)?;
     let published = has_published(&clusters);
     let panel = BarPanel::from_zero("triangles", clusters);
     let caption = "Triangles of each configuration at the benchmark spacing.".into();
-    Some(draft("triangles", caption, &panel, &published_legend(published)))
+    Some(draft(sheet, "triangles", caption, panel, &published_legend(published)))
 }
 
 /// Above the times of ours, medians with intervals; below what share of the whole a pass takes, beside the published share:
 /// seconds of two machines say nothing about each other.
-pub(super) fn pass_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
+pub(super) fn pass_times(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinished> {
     let run = inputs.bench?;
     let whole = |sample: &BenchSample| sample.total_s - sample.normals_s;
     let passes: [fn(&BenchSample) -> f64; 2] = [|s| s.vertex_s, |s| s.geometry_s + s.clustering_s];
@@ -126,14 +131,9 @@ pub(super) fn pass_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
         legend.push((Swatch::Diamond, "published share".into()));
         caption.push_str(" Published times are from another machine, so they are shown as shares alone.");
     }
-    let (mut canvas, top) = canvas_with_legend(&legend, 2.0 * HEIGHT);
-    for (place, (axis_label, clusters)) in
-        [("median time, ms", times), ("share of the whole", shares)].into_iter().enumerate()
-    {
-        let panel = BarPanel::from_zero(axis_label, clusters);
-        let y = top + HEIGHT * place as f64;
-        panel.draw(&mut canvas, (0.0, y), (WIDTH, y + HEIGHT));
-    }
+    let rows = [("median time, ms", times), ("share of the whole", shares)]
+        .map(|(axis_label, clusters)| vec![(1.0, BarPanel::from_zero(axis_label, clusters))]);
+    let canvas = rows_of_panels(sheet, &legend, rows.into(), HEIGHT);
     Some(Unfinished { name: "pass_times", caption, canvas })
 }
 
@@ -147,7 +147,7 @@ pub(super) fn median_of(
 }
 
 /// A bounded measure of shape, which no sliver drives.
-pub(super) fn radius_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
+pub(super) fn radius_ratios(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinished> {
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
     if meshes.is_empty() {
         return None;
@@ -160,10 +160,10 @@ pub(super) fn radius_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let caption = "Mean radius ratio of the triangles at the benchmark spacing: 1 is equilateral, 0 is flat. A few flat \
                    triangles change it little, unlike the mean aspect ratio."
         .into();
-    Some(draft("radius_ratio", caption, &panel, &[]))
+    Some(draft(sheet, "radius_ratio", caption, panel, &[]))
 }
 
-pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
+pub(super) fn aspect_ratios(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinished> {
     let clusters = mesh_clusters(
         inputs,
         |m| known(&m.quality.published_aspect_ratio, |d| d.mean),
@@ -198,5 +198,5 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>) -> Option<Unfinished> {
         high => Axis::from_zero(high),
     };
     let panel = BarPanel { broken: true, ..BarPanel::of("mean aspect ratio", axis, clusters) };
-    Some(draft("aspect_ratio", caption, &panel, &published_legend(published)))
+    Some(draft(sheet, "aspect_ratio", caption, panel, &published_legend(published)))
 }

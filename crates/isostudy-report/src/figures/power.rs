@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::canvas::BLACK;
-use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::draft::{Sheet, Unfinished, canvas_with_legend};
 use super::error::FigureError;
 use super::legend::Swatch;
 use super::marks::Mark;
@@ -36,9 +36,9 @@ pub fn power_figure(assumptions: &Assumptions, all: &[Power]) -> Result<Figure, 
     legend.push((Swatch::Dashes, format!("power {WANTED}")));
     let per_row = assumptions.shares.len().clamp(1, PER_ROW);
     let rows: Vec<&[f64]> = assumptions.shares.chunks(per_row).collect();
-    let (mut canvas, top) = canvas_with_legend(&legend, ROW * rows.len() as f64);
+    let (mut canvas, top) = canvas_with_legend(Sheet::Wide, &legend, ROW * rows.len() as f64);
     for (r, row) in rows.iter().enumerate() {
-        let (width, y) = (WIDTH / per_row as f64, top + ROW * r as f64);
+        let (width, y) = (Sheet::Wide.width() / per_row as f64, top + ROW * r as f64);
         for (i, &share) in row.iter().enumerate() {
             let x = width * i as f64;
             panel(assumptions, all, share, &kinds).draw(&mut canvas, (x, y), (x + width, y + ROW));

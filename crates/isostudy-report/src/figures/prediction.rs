@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::canvas::BLACK;
-use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::draft::{Sheet, Unfinished, canvas_with_legend};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
@@ -15,7 +15,12 @@ use isostudy_statistics::{DeclaredBallot, outcome_counts};
 const ROW: f64 = 320.0;
 const PER_ROW: usize = 3;
 
-pub(super) fn draft(study: &Study, prediction: &Prediction, declared: &[DeclaredBallot]) -> Unfinished {
+pub(super) fn draft(
+    study: &Study,
+    prediction: &Prediction,
+    declared: &[DeclaredBallot],
+    sheet: Sheet,
+) -> Unfinished {
     let counts = outcome_counts(declared);
     let mut legend: Vec<(Swatch, String)> = Vec::new();
     for (o, object) in study.file.objects.iter().enumerate() {
@@ -30,10 +35,10 @@ pub(super) fn draft(study: &Study, prediction: &Prediction, declared: &[Declared
     }
     legend.push((Swatch::Line(BLACK), "Davidson's model".into()));
     legend.push((Swatch::Dashes, "as many for either".into()));
-    let rows: Vec<&[MetricPrediction]> = prediction.metrics.chunks(PER_ROW).collect();
-    let (mut canvas, top) = canvas_with_legend(&legend, ROW * rows.len() as f64);
+    let rows: Vec<&[MetricPrediction]> = prediction.metrics.chunks(sheet.columns(PER_ROW)).collect();
+    let (mut canvas, top) = canvas_with_legend(sheet, &legend, ROW * rows.len() as f64);
     for (r, row) in rows.iter().enumerate() {
-        let (width, y) = (WIDTH / PER_ROW as f64, top + ROW * r as f64);
+        let (width, y) = (sheet.width() / sheet.columns(PER_ROW) as f64, top + ROW * r as f64);
         for (i, found) in row.iter().enumerate() {
             let x = width * i as f64;
             panel(study, found, &counts).draw(&mut canvas, (x, y), (x + width, y + ROW));

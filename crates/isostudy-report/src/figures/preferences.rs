@@ -1,9 +1,9 @@
 //! Preference factors: per object with intervals, and the paper's sums.
 
 use super::axis::Axis;
-use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
+use super::bars::{Bar, BarPanel, Cluster, Slot, largest, rows_of_panels};
 use super::canvas::{BLACK, WHITE};
-use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::draft::{Sheet, Unfinished};
 use super::legend::Swatch;
 use super::style::{self, Fill};
 use isostudy_design::published::PreferenceKind;
@@ -17,20 +17,17 @@ const OVERALL: f64 = 440.0;
 /// How much of the width the shares of showings have.
 const LARGE: f64 = 0.62;
 
-pub(super) fn per_object(study: &Study, tally: &Tally) -> Unfinished {
+pub(super) fn per_object(study: &Study, tally: &Tally, sheet: Sheet) -> Unfinished {
     let legend = vec![
         (Swatch::Whisker, "95 % interval over respondents".into()),
         (Swatch::Dashes, "largest possible".into()),
     ];
-    let rows = rows_of_groups(study);
-    let (mut canvas, top) = canvas_with_legend(&legend, ROW * rows.len() as f64);
-    for (r, row) in rows.iter().enumerate() {
-        let (width, y) = (WIDTH / row.len() as f64, top + ROW * r as f64);
-        for (i, &group) in row.iter().enumerate() {
-            let x = width * i as f64;
-            group_panel(study, tally, group).draw(&mut canvas, (x, y), (x + width, y + ROW));
-        }
-    }
+    let row = |groups: Vec<usize>| -> Vec<(f64, BarPanel)> {
+        let share = 1.0 / groups.len() as f64;
+        groups.into_iter().map(|group| (share, group_panel(study, tally, group))).collect()
+    };
+    let rows = rows_of_groups(study).into_iter().map(row).collect();
+    let canvas = rows_of_panels(sheet, &legend, rows, ROW);
     let caption = "Preference factors per object and comparison group: answers for a configuration over all answers to \
                    the group's questions. Intervals count each respondent as one observation; they are cut at 0 and \
                    at the largest possible factor."
@@ -135,7 +132,7 @@ fn weights(study: &Study) -> String {
     )
 }
 
-pub(super) fn overall(study: &Study, tally: &Tally) -> Unfinished {
+pub(super) fn overall(study: &Study, tally: &Tally, sheet: Sheet) -> Unfinished {
     let factors = preference::group_factors(study, tally, |_| true);
     let published = |method: MethodId| {
         let mut cells = study.published.preferences.iter();
@@ -190,11 +187,10 @@ pub(super) fn overall(study: &Study, tally: &Tally) -> Unfinished {
         heading: "as published: sums of factors".into(),
         ..BarPanel::of("sum of preference factors", Axis::from_zero(1.05 * largest(&clusters)), clusters)
     };
-    let (mut canvas, top) = canvas_with_legend(&legend, OVERALL);
-    shares.draw(&mut canvas, (0.0, top), (LARGE * WIDTH, top + OVERALL));
-    panel.draw(&mut canvas, (LARGE * WIDTH, top), (WIDTH, top + OVERALL));
+    let rows = vec![vec![(LARGE, shares), (1.0 - LARGE, panel)]];
+    let canvas = rows_of_panels(sheet, &legend, rows, OVERALL);
     let mut caption = String::from(
-        "Overall preference. Large: in what share of the answers that showed a method it was chosen, one scale for all. Small: as \
+        "Overall preference. First: in what share of the answers that showed a method it was chosen, one scale for all. Second: as \
          published, the sum of a configuration's factors over its comparison groups.",
     );
     caption.push_str(&weights(study));

@@ -1,8 +1,8 @@
 //! How far each respondent agrees with the others.
 
 use super::axis::Axis;
-use super::bars::{Bar, BarPanel, Cluster, Slot};
-use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::bars::{Bar, BarPanel, Cluster, Slot, rows_of_panels};
+use super::draft::{Sheet, Unfinished, canvas_with_legend};
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
@@ -15,18 +15,18 @@ const ROWS: usize = 60;
 const STEPS: usize = 20;
 const NAME: &str = "respondents";
 
-pub(super) fn draft(majorities: &Majorities) -> Option<Unfinished> {
+pub(super) fn draft(majorities: &Majorities, sheet: Sheet) -> Option<Unfinished> {
     let screened: Vec<&Screening> = majorities.seen.iter().filter(|s| s.comparable > 0).collect();
     if screened.is_empty() {
         return None;
     }
-    Some(if screened.len() <= ROWS { one_by_one(screened) } else { counted(&screened) })
+    Some(if screened.len() <= ROWS { one_by_one(screened, sheet) } else { counted(&screened, sheet) })
 }
 
 const SAYS: &str = "share of a respondent's decided answers that side with the majority of the others, where they have one; half \
                     is what answering by chance gives.";
 
-fn one_by_one(mut screened: Vec<&Screening>) -> Unfinished {
+fn one_by_one(mut screened: Vec<&Screening>, sheet: Sheet) -> Unfinished {
     screened.sort_by(|a, b| {
         let share = |s: &Screening| s.agreement().unwrap_or_default();
         share(b).total_cmp(&share(a)).then(a.participant.cmp(&b.participant))
@@ -48,12 +48,12 @@ fn one_by_one(mut screened: Vec<&Screening>) -> Unfinished {
         (Swatch::Mark(Mark::nth(0, true)), "with the others half the time or more".to_owned()),
         (Swatch::Mark(Mark::nth(0, false)), "less than half".to_owned()),
     ];
-    let (mut canvas, top) = canvas_with_legend(&legend, forest::height(&blocks));
+    let (mut canvas, top) = canvas_with_legend(sheet, &legend, forest::height(sheet, &blocks));
     forest::draw(&mut canvas, &blocks, &Axis::up_to(1.0), "agreement with the others", 0.5, top);
     Unfinished { name: NAME, caption: format!("Agreement between respondents: {SAYS}"), canvas }
 }
 
-fn counted(screened: &[&Screening]) -> Unfinished {
+fn counted(screened: &[&Screening], sheet: Sheet) -> Unfinished {
     let mut counts = [0_u64; STEPS];
     for share in screened.iter().filter_map(|s| s.agreement()) {
         counts[((share * STEPS as f64) as usize).min(STEPS - 1)] += 1;
@@ -67,8 +67,7 @@ fn counted(screened: &[&Screening]) -> Unfinished {
         slots: counts.iter().enumerate().map(slot).collect(),
     }];
     let panel = BarPanel::from_zero("respondents", clusters);
-    let (mut canvas, top) = canvas_with_legend(&[], 340.0);
-    panel.draw(&mut canvas, (0.0, top), (WIDTH, top + 340.0));
+    let canvas = rows_of_panels(sheet, &[], vec![vec![(1.0, panel)]], 340.0);
     Unfinished {
         name: NAME,
         caption: format!("Agreement between {} respondents: {SAYS}", screened.len()),

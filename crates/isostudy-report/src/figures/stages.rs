@@ -1,7 +1,7 @@
 //! Stage times stacked: an object a panel; below, the same without sampling, which drowns the rest on costly fields.
 
-use super::bars::{Bar, BarPanel, Cluster, Slot, largest};
-use super::draft::{Unfinished, WIDTH, canvas_with_legend, in_rows};
+use super::bars::{Bar, BarPanel, Cluster, Slot, largest, rows_of_panels};
+use super::draft::{Sheet, Unfinished};
 use super::legend::Swatch;
 use super::meshes::median_of;
 use super::style;
@@ -15,7 +15,7 @@ const ROW: f64 = 400.0;
 /// The place of sampling among the stages.
 const SAMPLING: usize = 1;
 
-pub(super) fn stage_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
+pub(super) fn stage_times(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinished> {
     let run = inputs.bench?;
     let with_samples: Vec<usize> = (0..inputs.study.file.objects.len())
         .filter(|&o| run.samples.iter().any(|sample| sample.id.object == inputs.study.file.objects[o].id))
@@ -26,21 +26,15 @@ pub(super) fn stage_times(inputs: &Inputs<'_>) -> Option<Unfinished> {
     let mut legend: Vec<_> =
         style::stages().into_iter().map(|(name, fill)| (Swatch::Area(fill), name.to_owned())).collect();
     legend.push((Swatch::Whisker, "95 % interval of the median".into()));
-    let blocks = in_rows(&with_samples);
-    let (mut canvas, top) = canvas_with_legend(&legend, 2.0 * ROW * blocks.len() as f64);
-    let mut y = top;
-    for block in blocks {
-        for sampling in [true, false] {
-            let width = WIDTH / block.len() as f64;
-            for (i, &object) in block.iter().enumerate() {
-                let x = width * i as f64;
-                panel(inputs, object, sampling).draw(&mut canvas, (x, y), (x + width, y + ROW));
-            }
-            y += ROW;
-        }
-    }
+    let rows = sheet.in_rows(&with_samples).into_iter().flat_map(|block| {
+        [true, false].map(|sampling| {
+            let share = 1.0 / block.len() as f64;
+            block.iter().map(|&object| (share, panel(inputs, object, sampling))).collect()
+        })
+    });
+    let canvas = rows_of_panels(sheet, &legend, rows.collect(), ROW);
     let caption = format!(
-        "Time of each stage, stacked; above with, below without sampling the field. Every panel has its own scale. Bars are \
+        "Time of each stage, stacked: with sampling the field, and below without. Every panel has its own scale. Bars are \
          medians over rounds; the medians of stages are scaled to add up to that of the whole. {}",
         conditions(run).replace("means over ", "")
     );

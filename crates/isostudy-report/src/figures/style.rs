@@ -5,6 +5,7 @@
 
 use super::canvas::{BLACK, Canvas, Colour, WHITE};
 use super::marks::{Filling, Mark};
+use super::palette;
 use isostudy_design::{MethodId, Study};
 use plotters::style::RGBColor;
 
@@ -22,6 +23,11 @@ pub(super) const GRID: Colour = RGBColor(0xdd, 0xdd, 0xdd);
 pub(super) const LEFT: Colour = RGBColor(0x00, 0x72, 0xb2);
 pub(super) const NONE: Colour = RGBColor(0xdc, 0xdc, 0xdc);
 pub(super) const RIGHT: Colour = RGBColor(0xe6, 0x9f, 0x00);
+
+/// What is printed on an area whose colour is the same on white and on dark paper. Not quite black and white, so that they stay
+/// too, unlike ink and paper.
+pub(super) const DARK_INK: Colour = RGBColor(0x1c, 0x1c, 0x1c);
+pub(super) const LIGHT_INK: Colour = RGBColor(0xfd, 0xfd, 0xfd);
 
 /// With more methods than this, their names would take more room than what is drawn.
 const MOST_NAMED: usize = 8;
@@ -89,21 +95,27 @@ fn stripes(canvas: &mut Canvas, from: (f64, f64), to: (f64, f64), colour: Colour
     }
 }
 
-/// Black or white, whichever stands out from a colour.
+/// Black or white, whichever stands out from a colour. What changes on dark paper takes inks that do.
 pub(super) fn ink_on(colour: Colour) -> Colour {
     let RGBColor(r, g, b) = colour;
     let lightness = 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);
-    if lightness < 128.0 { WHITE } else { BLACK }
+    match (lightness < 128.0, palette::changes(colour)) {
+        (true, true) => WHITE,
+        (true, false) => LIGHT_INK,
+        (false, true) => BLACK,
+        (false, false) => DARK_INK,
+    }
 }
 
-/// Hues of levels, by place: grey, orange, blue, green, purple, sky blue. As many as marks have shapes.
-const HUES: [Colour; 6] = [
+/// Hues of levels, by place: grey, orange, blue, green, purple, sky blue, vermilion. As many as marks have shapes.
+pub(super) const HUES: [Colour; 7] = [
     RGBColor(0x4d, 0x4d, 0x4d),
     RGBColor(0xe6, 0x9f, 0x00),
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0x00, 0x9e, 0x73),
     RGBColor(0xcc, 0x79, 0xa7),
     RGBColor(0x56, 0xb4, 0xe9),
+    RGBColor(0xd5, 0x5e, 0x00),
 ];
 
 /// How many ways of filling there are.
@@ -131,7 +143,33 @@ pub(super) fn object_colour(object: usize) -> Colour {
     COLOURS[object % COLOURS.len()]
 }
 
-/// Which hue and which filling a method has, by place. No two of up to 24 methods of a study have both in common.
+/// Methods of one family look alike: a hue, thus a shape, for each, and a filling for each of its methods. `None` where there
+/// are too many families, or too many methods in one.
+fn by_family(study: &Study, method: MethodId) -> Option<[usize; 2]> {
+    // Two lattices of tetrahedra are two families.
+    let family = |of: &isostudy_design::Method| {
+        let arrangement = of.recipe.settings.get("arrangement").and_then(|value| value.as_str());
+        (of.recipe.kind.clone(), arrangement.map(str::to_owned))
+    };
+    let mut families: Vec<((String, Option<String>), usize)> = Vec::new();
+    let mut own = None;
+    for of in &study.methods {
+        let name = family(of);
+        let place = families.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {
+            families.push((name, 0));
+            families.len() - 1
+        });
+        if of.id == method {
+            own = Some([place, families[place].1]);
+        }
+        families[place].1 += 1;
+    }
+    let fits = families.len() <= HUES.len() && families.iter().all(|(_, methods)| *methods <= FILLINGS);
+    own.filter(|_| fits && families.len() > 1)
+}
+
+/// Which hue and which filling a method has: by its levels, else by its family, else by place. No two of up to 24 methods of a
+/// study have both in common.
 pub(super) fn hue_and_filling(study: &Study, method: MethodId) -> [usize; 2] {
     let level = |factor| study.level_of(method, factor).map(|level| level.index);
     let crossed = match study.declared_factors().collect::<Vec<_>>()[..] {
@@ -139,7 +177,8 @@ pub(super) fn hue_and_filling(study: &Study, method: MethodId) -> [usize; 2] {
         _ => None,
     };
     let place = study.place(method);
-    let (filling, hue) = crossed.unwrap_or((place / HUES.len(), place));
+    let crossed = crossed.map(|(filling, hue)| [hue, filling]);
+    let [hue, filling] = crossed.or_else(|| by_family(study, method)).unwrap_or([place, place / HUES.len()]);
     [hue % HUES.len(), filling % FILLINGS]
 }
 
@@ -155,8 +194,8 @@ pub(super) fn method(study: &Study, method: MethodId) -> Fill {
     let colour = HUES[hue];
     match filling {
         0 => Fill::plain(colour),
-        1 => Fill { colour: tint(colour), outline: colour, stripes: false },
-        2 => Fill { colour: tint(colour), outline: colour, stripes: true },
+        1 => Fill { colour: tint(colour, WHITE), outline: colour, stripes: false },
+        2 => Fill { colour: tint(colour, WHITE), outline: colour, stripes: true },
         _ => Fill::plain(colour).striped(),
     }
 }
@@ -172,8 +211,8 @@ pub(super) fn stages() -> [(&'static str, Fill); 5] {
     ]
 }
 
-fn tint(colour: Colour) -> Colour {
-    let RGBColor(r, g, b) = colour;
-    let lighter = |c: u8| (f64::from(c) * 0.38 + 255.0 * 0.62).round() as u8;
-    RGBColor(lighter(r), lighter(g), lighter(b))
+/// A colour that lets the paper through.
+pub(super) fn tint(colour: Colour, paper: Colour) -> Colour {
+    let mixed = |c: u8, paper: u8| (f64::from(c) * 0.38 + f64::from(paper) * 0.62).round() as u8;
+    RGBColor(mixed(colour.0, paper.0), mixed(colour.1, paper.1), mixed(colour.2, paper.2))
 }

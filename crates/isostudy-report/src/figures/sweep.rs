@@ -1,7 +1,7 @@
 //! A sweep: time against samples, time per triangle, speed-up against threads, quality against cost.
 
 use super::axis::Axis;
-use super::draft::{Unfinished, WIDTH, canvas_with_legend};
+use super::draft::{Sheet, Unfinished, canvas_with_legend};
 use super::error::FigureError;
 use super::legend::Swatch;
 use super::scatter::Scatter;
@@ -110,9 +110,9 @@ fn draw(
     legend: &[(Swatch, String)],
     rows: &[Vec<Scatter>],
 ) -> Option<Unfinished> {
-    let (mut canvas, top) = canvas_with_legend(legend, ROW * rows.len() as f64);
+    let (mut canvas, top) = canvas_with_legend(Sheet::Wide, legend, ROW * rows.len() as f64);
     for (row, panels) in (0_u32..).zip(rows) {
-        let (width, y) = (WIDTH / panels.len() as f64, top + ROW * f64::from(row));
+        let (width, y) = (Sheet::Wide.width() / panels.len() as f64, top + ROW * f64::from(row));
         for (column, panel) in (0_u32..).zip(panels) {
             let x = width * f64::from(column);
             panel.draw(&mut canvas, (x, y), (x + width, y + ROW));
@@ -267,10 +267,10 @@ mod tests {
         for study in [fixture::study(), crossed(4, 6), crossed(5, 4), crossed(2, 9), with_methods(None, 24)] {
             let mut looks = std::collections::BTreeMap::new();
             for method in &study.methods {
-                let mut canvas = super::super::canvas::Canvas::new(40.0, 20.0);
+                let mut canvas = super::super::canvas::Canvas::on(Sheet::Wide, 20.0);
                 style::mark(&study, method.id).draw(&mut canvas, (10.0, 10.0));
                 let marked = canvas.to_svg("mark").unwrap();
-                let mut canvas = super::super::canvas::Canvas::new(40.0, 20.0);
+                let mut canvas = super::super::canvas::Canvas::on(Sheet::Wide, 20.0);
                 style::method(&study, method.id).paint(&mut canvas, (5.0, 5.0), (35.0, 15.0));
                 for look in [marked, canvas.to_svg("bar").unwrap()] {
                     if let Some(other) = looks.insert(look, method.id) {

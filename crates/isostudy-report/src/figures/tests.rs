@@ -1,6 +1,6 @@
-use super::draft::in_rows;
 use super::*;
 use crate::fixture::{self, Everything};
+use isostudy_inference::Inputs;
 
 /// Every tag is closed in order, attributes are quoted, and no bare `&` or `<` is left in text.
 fn is_well_formed(svg: &str) -> bool {
@@ -49,6 +49,13 @@ fn every_figure_is_there_and_sound() {
     let all = Everything::of(fixture::study());
     let figures = figures(&Results::of(&all.inputs())).unwrap();
     let expected = [
+        (
+            "overview",
+            vec![
+                "Integrated clustering over no clustering",
+                "share of answers for the first: 0.5 is no preference",
+            ],
+        ),
         ("triangles", vec!["triangles", "120,000", "sphere", "asteroid", "bunny", "published"]),
         (
             "pass_times",
@@ -79,7 +86,12 @@ fn every_figure_is_there_and_sound() {
     assert_eq!(figures.len(), expected.len());
     for (figure, (name, labels)) in figures.iter().zip(expected) {
         assert_eq!(figure.name, name);
-        assert!(is_well_formed(&figure.svg), "{name}");
+        let narrow = figure.narrow.as_deref().expect("every figure of a study stands on pages");
+        assert!(is_well_formed(&figure.svg) && is_well_formed(narrow), "{name}");
+        assert!(
+            figure.narrow_size().is_some_and(|[width, _]| width == 360) && figure.size()[0] == 1000,
+            "{name}"
+        );
         for label in labels {
             assert!(figure.svg.contains(&format!(">\n{label}\n</text>")), "{name}: {label}");
         }
@@ -107,17 +119,59 @@ fn the_same_inputs_give_the_same_bytes() {
 }
 
 #[test]
-fn no_text_leaves_the_drawing() {
+fn nothing_leaves_the_drawing_and_no_text_stands_on_another() {
     let all = Everything::of(fixture::study());
-    for draft in drafts(&Results::of(&all.inputs())) {
-        assert_eq!(draft.canvas.texts_outside(), Vec::<String>::new(), "{}", draft.name);
+    let without = Inputs { answers: None, ..all.inputs() };
+    for inputs in [all.inputs(), without] {
+        for sheet in [Sheet::Wide, Sheet::Narrow] {
+            for draft in drafts(&Results::of(&inputs), sheet) {
+                let (name, canvas) = (draft.name, draft.canvas);
+                assert_eq!(canvas.texts_outside(), Vec::<String>::new(), "{name}, {sheet:?}");
+                assert_eq!(canvas.texts_on_texts(), Vec::new(), "{name}, {sheet:?}");
+                let [left, right] = canvas.reach();
+                assert!(left >= 0.0 && right <= sheet.width(), "{name}, {sheet:?}: {left} to {right}");
+            }
+        }
     }
+}
+
+#[test]
+fn a_phone_shows_letters_as_large_as_those_of_its_pages() {
+    let all = Everything::of(fixture::study());
+    for draft in drafts(&Results::of(&all.inputs()), Sheet::Narrow) {
+        // A screen of 360 pixels shows them as they are drawn, but for the margins of the page.
+        assert!(draft.canvas.least_em() >= 12.0, "{}: {}", draft.name, draft.canvas.least_em());
+    }
+}
+
+#[test]
+fn methods_of_one_family_share_a_hue() {
+    let mut study = fixture::study();
+    let recipe = |kind: &str, arrangement: Option<&str>| isostudy_design::Recipe {
+        kind: kind.into(),
+        settings: arrangement.map(|of| ("arrangement".to_owned(), of.into())).into_iter().collect(),
+    };
+    let recipes = [
+        recipe("cubes", None),
+        recipe("tetrahedra", Some("body-centred")),
+        recipe("tetrahedra", Some("simple-cubic")),
+        recipe("cubes", None),
+        recipe("tetrahedra", Some("body-centred")),
+        recipe("surface-nets", None),
+    ];
+    for (method, recipe) in study.methods.iter_mut().zip(recipes) {
+        method.recipe = recipe;
+        method.levels.fill(None);
+    }
+    let looks: Vec<[usize; 2]> =
+        study.methods.iter().map(|method| style::hue_and_filling(&study, method.id)).collect();
+    assert_eq!(looks, [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [3, 0]]);
 }
 
 #[test]
 fn captions_say_what_is_left_out() {
     let all = Everything::of(fixture::study());
-    let caption = meshes::aspect_ratios(&all.inputs()).unwrap().caption;
+    let caption = meshes::aspect_ratios(&all.inputs(), Sheet::Wide).unwrap().caption;
     assert!(
         caption.contains("192 degenerate triangles, whose ratio is infinite, are left out."),
         "{caption}"
@@ -128,16 +182,17 @@ fn captions_say_what_is_left_out() {
     let want = "A factor of an arrangement group can reach 1, one of a clustering group 2/3, so the sum weighs the \
                 arrangement half more.";
     assert!(caption.ends_with(want), "{caption}");
-    let caption = meshes::pass_times(&all.inputs()).unwrap().caption;
+    let caption = meshes::pass_times(&all.inputs(), Sheet::Wide).unwrap().caption;
     assert!(caption.contains("Published times are from another machine"), "{caption}");
 }
 
 #[test]
 fn objects_stand_in_rows_of_three_at_most_as_evenly_as_they_go() {
     let lengths = |objects: usize| -> Vec<usize> {
-        in_rows(&(0..objects).collect::<Vec<_>>()).iter().map(|row| row.len()).collect()
+        Sheet::Wide.in_rows(&(0..objects).collect::<Vec<_>>()).iter().map(|row| row.len()).collect()
     };
     assert_eq!([1, 2, 3].map(lengths), [vec![1], vec![2], vec![3]]);
     assert_eq!([4, 5, 6].map(lengths), [vec![2, 2], vec![3, 2], vec![3, 3]]);
-    assert_eq!(in_rows(&[4, 7, 1, 0]).concat(), [4, 7, 1, 0]);
+    assert_eq!(Sheet::Wide.in_rows(&[4, 7, 1, 0]).concat(), [4, 7, 1, 0]);
+    assert_eq!(Sheet::Narrow.in_rows(&[4, 7, 1]), [[4], [7], [1]]);
 }

@@ -1,7 +1,7 @@
 //! Davidson's worths with their intervals, group by group.
 
 use super::axis::Axis;
-use super::draft::{Unfinished, canvas_with_legend};
+use super::draft::{Sheet, Unfinished, canvas_with_legend};
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
@@ -12,7 +12,7 @@ use isostudy_inference::scale::GroupScale;
 use isostudy_table::digits::number;
 
 /// In words where there is a study: its ids of groups and items are the same letters.
-pub(super) fn draft(study: Option<&Study>, scales: &[GroupScale<'_>]) -> Option<Unfinished> {
+pub(super) fn draft(study: Option<&Study>, scales: &[GroupScale<'_>], sheet: Sheet) -> Option<Unfinished> {
     let blocks: Vec<Block> = scales.iter().filter_map(|of| block(study, of)).collect();
     if blocks.is_empty() {
         return None;
@@ -22,7 +22,7 @@ pub(super) fn draft(study: Option<&Study>, scales: &[GroupScale<'_>]) -> Option<
         (Swatch::Mark(Mark::nth(0, false)), "reference, 0 by definition".to_owned()),
         forest::interval_entry(),
     ];
-    let (mut canvas, top) = canvas_with_legend(&legend, forest::height(&blocks));
+    let (mut canvas, top) = canvas_with_legend(sheet, &legend, forest::height(sheet, &blocks));
     let (low, high) = forest::range(&blocks, 0.0);
     let axis = Axis::spanning(low, high);
     forest::draw(&mut canvas, &blocks, &axis, "log worth", 0.0, top);

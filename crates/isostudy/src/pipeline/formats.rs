@@ -16,12 +16,15 @@ pub(super) fn write_table(writer: &mut Writer<'_>, folder: &str, table: &Table) 
     writer.write(&format!("{path}.tex"), table.to_latex().as_bytes())
 }
 
-/// Writes a figure as SVG and PNG into a folder.
+/// Writes a figure as SVG and PNG into a folder, and as SVG for narrow screens where it is drawn for them.
 ///
 /// # Errors
 /// If a file cannot be written.
 pub(super) fn write_figure(writer: &mut Writer<'_>, folder: &str, figure: &Figure) -> Result<()> {
     let path = format!("{folder}/{}", figure.name);
     writer.write(&format!("{path}.svg"), figure.svg.as_bytes())?;
+    if let Some(narrow) = &figure.narrow {
+        writer.write(&format!("{path}-narrow.svg"), narrow.as_bytes())?;
+    }
     writer.write(&format!("{path}.png"), &figure.png)
 }

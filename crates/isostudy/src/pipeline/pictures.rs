@@ -1,21 +1,38 @@
 //! One picture of each method on one object: what the pages show first.
 
-use super::Pipeline;
 use super::pages::PictureData;
+use super::{Meshes, Pipeline};
 use crate::source_digests;
 use crate::store::{Inputs, Stamp};
 use anyhow::{Context, Result};
 use isostudy_design::config::FieldSection;
-use isostudy_design::{Configuration, Study};
+use isostudy_design::{Configuration, ConfigurationId, Study};
 use isostudy_raster::{pixmap_from_png, pixmap_to_png};
+use isostudy_report::telling;
 
 /// Pictures of more methods would be too small to tell apart.
 const MOST: usize = 12;
 
-/// The object that is shown: the first that is no sphere, on which methods look too much alike.
-pub(super) fn object(study: &Study) -> usize {
-    let round = |field: &FieldSection| matches!(field, FieldSection::Sphere { .. });
-    study.file.objects.iter().position(|object| !round(&object.field)).unwrap_or(0)
+/// What pages show first: an object, and two of its meshes.
+pub(super) struct ShownFirst {
+    /// Its place among the study's.
+    pub(super) object: usize,
+    /// What the viewer opens on; `None` where no two meshes differ.
+    pub(super) pair: Option<[ConfigurationId; 2]>,
+}
+
+impl ShownFirst {
+    /// Whether methods differ most on this object, so that it was not taken for want of another.
+    pub(super) fn is_telling(&self) -> bool {
+        self.pair.is_some()
+    }
+
+    /// Where no two meshes differ: the first object that is no sphere, on which methods look too much alike.
+    fn without_difference(study: &Study) -> Self {
+        let round = |field: &FieldSection| matches!(field, FieldSection::Sphere { .. });
+        let object = study.file.objects.iter().position(|object| !round(&object.field)).unwrap_or(0);
+        Self { object, pair: None }
+    }
 }
 
 /// Where a method's picture is.
@@ -24,10 +41,19 @@ pub(super) fn path(configuration: &Configuration) -> String {
 }
 
 impl Pipeline<'_> {
+    /// What pages show first: that which is [`telling`].
+    pub(super) fn shown_first(&self, meshes: &Meshes) -> Result<ShownFirst> {
+        let found = telling(self.study, &self.mesh_records(meshes)?);
+        Ok(match found {
+            Some(found) => ShownFirst { object: found.object, pair: Some(found.pair) },
+            None => ShownFirst::without_difference(self.study),
+        })
+    }
+
     /// The configurations on the pages' picture; none of a study with too many methods. A method whose cells alone differ from those
     /// of an earlier one is not among them.
-    pub(super) fn pictured(&self) -> Vec<&Configuration> {
-        let object = object(self.study);
+    pub(super) fn pictured(&self, shown: &ShownFirst) -> Vec<&Configuration> {
+        let object = shown.object;
         let study = self.study;
         let is_new = |c: &&Configuration| {
             let own = study.method(c.id.method);
@@ -40,8 +66,8 @@ impl Pipeline<'_> {
     }
 
     /// Takes the first frame of each turntable of one object. `turntables` are in the order of the configurations.
-    pub(super) fn pictures(&self, turntables: &[Stamp]) -> Result<Vec<Stamp>> {
-        let pictured = self.pictured();
+    pub(super) fn pictures(&self, turntables: &[Stamp], shown: &ShownFirst) -> Result<Vec<Stamp>> {
+        let pictured = self.pictured(shown);
         let one = |(configuration, turntable): (&Configuration, &Stamp)| {
             let inputs = Inputs::of_sources(source_digests::PICTURES).stamp(turntable);
             self.store.stage(&format!("method_picture/{}", configuration.id), inputs, |writer| {
@@ -54,18 +80,20 @@ impl Pipeline<'_> {
     }
 
     /// The pictures that were made.
-    pub(super) fn read_pictures(&self) -> Result<Vec<PictureData>> {
+    pub(super) fn read_pictures(&self, shown: &ShownFirst) -> Result<Vec<PictureData>> {
         let read = |configuration: &Configuration| {
             let path = path(configuration);
             let png = std::fs::read(self.store.root().join(&path)).with_context(|| path.clone())?;
             let pixmap = pixmap_from_png(&png).with_context(|| path.clone())?;
             Ok(PictureData {
                 object: self.study.object(configuration).name.clone(),
+                is_telling: shown.is_telling(),
+                id: configuration.id.method.to_string(),
                 label: self.study.method(configuration.id.method).label.clone(),
                 size: [pixmap.width(), pixmap.height()],
                 png,
             })
         };
-        self.pictured().into_iter().map(read).collect()
+        self.pictured(shown).into_iter().map(read).collect()
     }
 }

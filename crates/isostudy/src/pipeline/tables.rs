@@ -2,6 +2,7 @@
 
 use super::formats::{write_figure, write_table};
 use super::pages::{Abstract, PictureData, fits, write_report};
+use super::pictures::ShownFirst;
 use super::{Meshes, Pipeline};
 use crate::source_digests;
 use crate::store::{Inputs, Stamp, Store, Writer, sha256};
@@ -9,22 +10,25 @@ use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
 use isostudy_design::Study;
 use isostudy_design::config::ResponsesSection;
+use isostudy_inference::tally::QuestionCount;
 use isostudy_inference::{Answered, Preferences, Results};
 use isostudy_paper::Paper;
-use isostudy_report::{Figure, LongFrame};
+use isostudy_report::{Figure, LongFrame, OVERVIEW};
 use isostudy_responses::Reading;
 use isostudy_table::Table;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 impl Pipeline<'_> {
     /// Every table and figure of the study.
-    pub(crate) fn tables(
+    pub(super) fn tables(
         &self,
         meshes: &Meshes,
         timings: &Stamp,
         chunks: &[Stamp],
         pictures: &[Stamp],
+        shown: &ShownFirst,
     ) -> Result<Stamp> {
         let step = Step::begin("tables", 1, 1);
         let mut inputs = study_inputs(self.study)?.stamp(timings);
@@ -49,7 +53,7 @@ impl Pipeline<'_> {
             };
             let results = Results::of(&inputs);
             let paper = Paper::of(&results);
-            write(writer, &results, &paper, &self.read_pictures()?, true)?;
+            write(writer, &results, &paper, &self.read_pictures(shown)?, true)?;
             writer.write_json(UNEXPLAINED, &paper.unexplained_differences())
         })?;
         step.count(stamp.redone);
@@ -123,12 +127,9 @@ pub(crate) fn write_without_study(
         let figures = isostudy_report::figures_of_groups(&preferences).context("figures")?;
         write_figures(writer, &figures)?;
         write_frames(writer, &[isostudy_report::answers_frame(&reading.responses)])?;
-        write_report(
-            writer,
-            &isostudy_report::report_of_groups(&title, &preferences, &tables, &figures),
-            &[],
-            false,
-        )
+        let (overview, figures) = with_overview(figures);
+        let report = isostudy_report::report_of_groups(&title, &preferences, &tables, &figures);
+        write_report(writer, &report, overview.as_ref(), &[], false)
     })?;
     Ok(Said { found: isostudy_report::found_in_groups(&preferences), tables })
 }
@@ -151,6 +152,16 @@ pub(super) struct FigureEntry {
     /// Size as shown, in pixels.
     pub(super) width: u32,
     pub(super) height: u32,
+    /// The same of the drawing for narrow screens, `NAME-narrow.svg`.
+    pub(super) narrow: Option<[u32; 2]>,
+}
+
+/// How the answers to a question fell out, with the sides as the study lists them: `tables/votes.json` has each question's.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Votes {
+    pub(super) left: u64,
+    pub(super) none: u64,
+    pub(super) right: u64,
 }
 
 /// Cells and rows of the answers that were not taken as they stand.
@@ -159,6 +170,8 @@ const UNEXPLAINED: &str = "tables/unexplained.json";
 pub(super) const TABLE_CONTENTS: &str = "tables/contents.json";
 /// What the report says first.
 pub(super) const ABSTRACT: &str = "tables/abstract.json";
+/// The votes on each pair, where there are answers.
+pub(super) const VOTES: &str = "tables/votes.json";
 pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 
 /// `gallery` says whether an `index.html` will stand beside the report.
@@ -173,12 +186,29 @@ fn write(
     write_tables(writer, &tables)?;
     let figures = isostudy_report::figures(results).context("figures")?;
     write_figures(writer, &figures)?;
+    let (overview, figures) = with_overview(figures);
     let report = isostudy_report::report(results, &tables, &figures, paper.published(&tables));
-    write_report(writer, &report, pictures, gallery)?;
+    write_report(writer, &report, overview.as_ref(), pictures, gallery)?;
     if gallery {
         writer.write_json(ABSTRACT, &Abstract::of(&report))?;
+        writer.write_json(VOTES, &votes(results))?;
     }
     write_frames(writer, &isostudy_report::frames(&results.inputs))
+}
+
+/// What the pages show before all else, and the other figures, which have their places in the report.
+fn with_overview(figures: Vec<Figure>) -> (Option<Figure>, Vec<Figure>) {
+    let (overview, others): (Vec<Figure>, Vec<Figure>) =
+        figures.into_iter().partition(|figure| figure.name == OVERVIEW);
+    (overview.into_iter().next(), others)
+}
+
+/// By question; empty without answers.
+fn votes(results: &Results<'_>) -> BTreeMap<String, Votes> {
+    let Some(answered) = results.inputs.answers else { return BTreeMap::new() };
+    let counts = results.inputs.study.comparisons.iter().zip(&answered.tally.questions);
+    let of = |count: &QuestionCount| Votes { left: count.left, none: count.none, right: count.right };
+    counts.map(|(comparison, count)| (comparison.question.clone(), of(count))).collect()
 }
 
 /// The tables of a study, with those of the paper among them.
@@ -202,7 +232,7 @@ fn write_figures(writer: &mut Writer<'_>, figures: &[Figure]) -> Result<()> {
         write_figure(writer, "figures", figure)?;
         let [width, height] = figure.size();
         let (name, caption) = (figure.name.clone(), figure.caption.clone());
-        entries.push(FigureEntry { name, caption, width, height });
+        entries.push(FigureEntry { name, caption, width, height, narrow: figure.narrow_size() });
     }
     writer.write_json(FIGURE_CONTENTS, &entries)
 }

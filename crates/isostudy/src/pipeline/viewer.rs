@@ -5,6 +5,7 @@ mod levels;
 mod library;
 
 use super::pages::{Embedded, viewer_page};
+use super::pictures::ShownFirst;
 use super::{Meshes, Pipeline};
 use crate::source_digests;
 use crate::store::Inputs;
@@ -43,14 +44,14 @@ impl Viewer {
 
 impl Pipeline<'_> {
     /// Makes the viewer and the meshes that only it shows, if the library is there.
-    pub(super) fn viewer(&self, meshes: &Meshes) -> Result<Viewer> {
+    pub(super) fn viewer(&self, meshes: &Meshes, shown: &ShownFirst) -> Result<Viewer> {
         let Some(section) = &self.study.file.viewer else { return Ok(Viewer::NotAskedFor) };
         let Some(library) = Library::read(&self.study.resolve(&section.three))? else {
             tell!("viewer         left out: {} lacks three.js, which `make three` fetches", section.three);
             return Ok(Viewer::WithoutLibrary);
         };
         let levels = self.levels(meshes, &section.from_fine_to_coarse())?;
-        let catalogue = Catalogue::of(self.study, &levels, &self.left_out());
+        let catalogue = Catalogue::of(self.study, &levels, &self.left_out(), shown);
         let mut inputs = Inputs::of_sources(source_digests::PAGES)
             .text("library", &library.digest())
             .value("catalogue", &catalogue);

@@ -1,12 +1,18 @@
-// Animations are large: those of a section load when it is opened, and not before.
+// Animations are large: those of a section load when it is opened, and not before. They are shown when all are there, in one go, so
+// that they turn together.
 const sections = [...document.querySelectorAll("details")];
 for (const section of sections) {
-  const load = () => {
+  const load = async () => {
     if (!section.open) return;
-    for (const image of section.querySelectorAll("img[data-src]")) {
-      image.src = image.dataset.src;
-      image.removeAttribute("data-src");
-    }
+    const images = [...section.querySelectorAll("img[data-src]")];
+    const sources = images.map((image) => image.dataset.src);
+    for (const image of images) image.removeAttribute("data-src");
+    await Promise.allSettled(sources.map((source) => {
+      const ahead = new Image();
+      ahead.src = source;
+      return ahead.decode();
+    }));
+    images.forEach((image, i) => { image.src = sources[i]; });
   };
   section.addEventListener("toggle", load);
   load();

@@ -37,6 +37,8 @@ pub(in crate::pipeline) fn fits(name: &str) -> bool {
 pub(super) struct Picture {
     /// A file beside the page, or the picture itself.
     pub(super) source: String,
+    /// What tables call the method.
+    pub(super) id: String,
     pub(super) label: String,
     pub(super) alt: String,
     pub(super) width: u32,
@@ -44,6 +46,7 @@ pub(super) struct Picture {
 }
 
 /// What stands under the pictures of the methods.
-pub(super) fn caption(object: &str) -> String {
-    format!("The methods on one object, the {object}: the first frame of each turntable.")
+pub(super) fn caption(object: &str, is_telling: bool) -> String {
+    let which = if is_telling { "the object on which their meshes differ most" } else { "one object" };
+    format!("The methods on {which}, the {object}: the first frame of each turntable.")
 }

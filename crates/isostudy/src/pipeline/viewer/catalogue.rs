@@ -1,7 +1,7 @@
 //! What the viewer knows of a study: its objects, methods and meshes, and the numbers of each mesh.
 
 use super::levels::{Entry, Level};
-use crate::pipeline::pictures;
+use crate::pipeline::pictures::ShownFirst;
 use isostudy_design::config::{CameraSection, ShadingSection};
 use isostudy_design::record::MeshRecord;
 use isostudy_design::{ConfigurationId, Study};
@@ -14,6 +14,9 @@ pub(super) struct Catalogue<'a> {
     objects: Vec<Object<'a>>,
     /// The object that is shown first, as on the other pages.
     first: &'a str,
+    /// The two meshes that are shown first: of that object, the one that lies nearest to the isosurface and the one that lies
+    /// farthest from it.
+    opening: Option<&'a [ConfigurationId; 2]>,
     /// How high the eye stands at first.
     elevation_rad: f64,
     shading: &'a ShadingSection,
@@ -74,7 +77,12 @@ struct Numbers {
 
 impl<'a> Catalogue<'a> {
     /// `levels` are configuration by configuration.
-    pub(super) fn of(study: &'a Study, levels: &[Level], left_out: &[(ConfigurationId, String)]) -> Self {
+    pub(super) fn of(
+        study: &'a Study,
+        levels: &[Level],
+        left_out: &[(ConfigurationId, String)],
+        shown: &'a ShownFirst,
+    ) -> Self {
         let mut digests: Vec<&str> = Vec::new();
         let mut files = Vec::new();
         let mut meshes: Vec<Mesh> = Vec::new();
@@ -111,7 +119,8 @@ impl<'a> Catalogue<'a> {
         Self {
             title: &study.file.study.title,
             objects: study.file.objects.iter().map(object).collect(),
-            first: &study.file.objects[pictures::object(study)].id,
+            first: &study.file.objects[shown.object].id,
+            opening: shown.pair.as_ref(),
             elevation_rad: study.file.turntable.elevation_rad,
             shading: &study.file.shading,
             factors,

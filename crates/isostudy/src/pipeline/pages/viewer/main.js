@@ -22,6 +22,7 @@ const panes = SIDES.map((side) => document.getElementById(`${side}-view`));
 const slider = document.getElementById('resolution');
 const sliderSaid = document.getElementById('resolution-said');
 const keys = document.getElementById('keys');
+const address = document.getElementById('address');
 // From coarse to fine, as the slider runs.
 const factors = [...catalogue.factors].reverse();
 
@@ -43,20 +44,32 @@ try {
   for (const pane of panes) tell(pane, 'This browser shows no meshes: WebGL 2 is missing or switched off. The numbers are beside.');
 }
 
-/** The first two meshes of an object, at the resolution of the animations. */
+/** The pair that the catalogue opens on, else the first two meshes of an object; at the resolution of the animations. */
 function initial() {
-  const first = catalogue.meshes.find((of) => of.object === catalogue.first) ?? catalogue.meshes[0];
-  const second = catalogue.meshes.find((of) => of.object === first.object && of.id !== first.id) ?? first;
+  const [left, right] = catalogue.opening ?? [];
+  const first = meshes.get(left) ?? catalogue.meshes.find((of) => of.object === catalogue.first) ?? catalogue.meshes[0];
+  const second = meshes.get(right) ?? catalogue.meshes.find((of) => of.object === first.object && of.id !== first.id) ?? first;
   const nearest = factors.reduce((a, b) => (Math.abs(Math.log(b)) < Math.abs(Math.log(a)) ? b : a));
   return { left: first.id, right: second.id, mode: 'wires', factor: nearest };
 }
 
-/** Takes what the address says, as far as it is known. */
+/** Takes what the address says, as far as it is known, and says what is not. */
 function follow() {
   const asked = link.read();
-  for (const side of SIDES) if (meshes.has(asked[side])) shown[side] = asked[side];
-  if (mode(asked.mode)) shown.mode = asked.mode;
-  if (factors.includes(Number(asked.factor))) shown.factor = Number(asked.factor);
+  const known = {
+    left: [...meshes.keys()],
+    right: [...meshes.keys()],
+    mode: MODES.map(({ id }) => id),
+    factor: factors.map(String),
+  };
+  const wrong = [];
+  for (const [key, value] of Object.entries(asked)) {
+    if (!known[key]) wrong.push(`The address has “${key}”, which this page does not know. It knows ${Object.keys(known).join(', ')}.`);
+    else if (known[key].includes(value)) shown[key] = key === 'factor' ? Number(value) : value;
+    else wrong.push(`The address asks for ${key}=${value}, which this page does not have. It has ${known[key].join(', ')}.`);
+  }
+  address.hidden = wrong.length === 0;
+  address.replaceChildren(...wrong.map((text) => Object.assign(document.createElement('p'), { textContent: text })));
 }
 
 function tell(pane, text) {

@@ -11,6 +11,30 @@ const TURN = Math.PI / 24;
 /** What one press of + or - divides or multiplies the distance by. */
 const STEP = 1.15;
 
+/** Room around the surfaces at first. */
+const MARGIN = 1.04;
+/** In how many directions, and at how many heights, a surface is looked at for its size. */
+const TURNS = 24;
+const SLICES = 24;
+
+/** Of slices of a surface, by height: the farthest distance from the vertical through a middle, and the height above it. */
+function outline(geometry, center) {
+  const { array } = geometry.attributes.position;
+  let [low, high] = [Infinity, -Infinity];
+  for (let i = 2; i < array.length; i += 3) {
+    low = Math.min(low, array[i]);
+    high = Math.max(high, array[i]);
+  }
+  const radii = new Array(SLICES).fill(0);
+  const slice = (height) => Math.min(SLICES - 1, Math.floor((SLICES * (height - low)) / (high - low || 1)));
+  for (let i = 0; i < array.length; i += 3) {
+    const at = slice(array[i + 2]);
+    radii[at] = Math.max(radii[at], Math.hypot(array[i] - center.x, array[i + 1] - center.y));
+  }
+  const edge = (place) => low + ((high - low) * place) / SLICES - center.z;
+  return radii.flatMap((radius, place) => (radius > 0 ? [[radius, edge(place)], [radius, edge(place + 1)]] : []));
+}
+
 ColorManagement.enabled = false;
 
 export class Views {
@@ -35,20 +59,22 @@ export class Views {
     this.camera = new PerspectiveCamera();
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
+    // The controls take every finger. One that moves up or down is left to the page, which is higher than a phone's screen.
+    canvas.style.touchAction = 'pan-y';
     this.controls.addEventListener('change', () => this.later());
     new ResizeObserver(() => this.later()).observe(canvas);
     canvas.addEventListener('webglcontextrestored', () => this.later());
   }
 
-  /** Looks from where a study's animations of an object begin, as near as shows all of both surfaces. */
+  /** Looks from where a study's animations of an object begin, as near as shows all of both surfaces in both panes. */
   look(object) {
     this.fov = object.camera.vertical_fov_rad;
     const { camera, controls } = this;
-    const { center, radius } = this.around();
+    const { center } = this.around();
     const up = this.catalogue.elevation_rad;
     const direction = new Vector3(Math.cos(up), Math.cos(up), Math.sin(up)).normalize();
     controls.target.copy(center);
-    camera.position.copy(center).addScaledVector(direction, radius / Math.sin(this.fov / 2));
+    camera.position.copy(center).addScaledVector(direction, this.nearest(center, direction));
     camera.lookAt(center);
     // The light stands to the camera as it does to that of the first frame.
     camera.updateMatrixWorld();
@@ -56,6 +82,28 @@ export class Views {
     this.light = light.applyQuaternion(camera.quaternion.clone().invert());
     controls.update();
     this.later();
+  }
+
+  /** How far from the middle the camera shows all of both surfaces in both panes, however they are turned about the vertical. */
+  nearest(center, direction) {
+    const outlines = this.sides.filter((side) => side.mesh.visible).flatMap((side) => outline(side.mesh.geometry, center));
+    if (outlines.length === 0) return 1 / Math.sin(this.fov / 2);
+    const right = new Vector3(-direction.y, direction.x, 0).normalize();
+    const upwards = new Vector3().crossVectors(direction, right);
+    let most = 0;
+    for (const { clientWidth, clientHeight } of this.panes) {
+      const aspect = clientWidth / clientHeight;
+      const tangent = Math.tan(this.fov / 2) / Math.min(aspect, 1);
+      for (const [radius, height] of outlines) {
+        for (let step = 0; step < TURNS; step += 1) {
+          const angle = (2 * Math.PI * step) / TURNS;
+          const at = new Vector3(radius * Math.cos(angle), radius * Math.sin(angle), height);
+          const [x, y] = [Math.abs(at.dot(right)) / aspect, Math.abs(at.dot(upwards))];
+          most = Math.max(most, at.dot(direction) + Math.max(x, y) / tangent);
+        }
+      }
+    }
+    return most * MARGIN;
   }
 
   /** A ball that holds both surfaces. */
