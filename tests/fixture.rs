@@ -139,7 +139,7 @@ pub(crate) fn without_measured_times(mut files: BTreeMap<String, Vec<u8>>) -> BT
     };
     let counts: Vec<String> = benchmark.lines().map(|line| cut(line).join(",")).collect();
     files.insert("counts".into(), counts.join("\n").into_bytes());
-    const MEASURED: [&str; 18] = [
+    const MEASURED: [&str; 21] = [
         "bench/",
         "data/times.",
         "index.html",
@@ -158,6 +158,9 @@ pub(crate) fn without_measured_times(mut files: BTreeMap<String, Vec<u8>>) -> BT
         "figures/fronts.",
         "figures/pass_times.",
         "figures/stage_times.",
+        "figures/fronts-narrow.",
+        "figures/pass_times-narrow.",
+        "figures/stage_times-narrow.",
     ];
     files.retain(|path, _| !MEASURED.iter().any(|start| path.starts_with(start)));
     files

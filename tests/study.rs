@@ -27,9 +27,12 @@ fn a_study_makes_everything_once_and_then_nothing() {
             assert!(made.contains_key(&format!("tables/{name}.{extension}")), "{name}.{extension}");
         }
     }
-    // Six pictures of methods have no SVG.
-    assert_eq!(count("figures/", ".svg") + 6, count("figures/", ".png"));
-    assert!(count("figures/", ".svg") >= 9);
+    // Six pictures of methods have no SVG, and every figure has one more for narrow screens.
+    let narrow = count("figures/", "-narrow.svg");
+    assert_eq!(count("figures/", ".svg") - narrow + 6, count("figures/", ".png"));
+    let figures: serde_json::Value = serde_json::from_slice(&made["figures/contents.json"]).unwrap();
+    assert_eq!(figures.as_array().unwrap().len(), narrow);
+    assert!(narrow >= 14, "{narrow}");
 
     let again = fixture.succeed("study", &[]);
     assert!(!again.stderr.contains(" made, "), "{}", again.stderr);
@@ -105,9 +108,10 @@ fn the_report_can_be_read_alone() {
         *headings[0] == "<h1" && headings[1..].iter().all(|h| **h == "<h2") && headings.len() > 8,
         "{headings:?}"
     );
+    // Each is drawn for wide and for narrow screens.
     let figures = page.matches("<svg").count();
-    assert!(figures >= 13, "{figures}");
-    assert_eq!(page.matches("role=\"img\" aria-label=\"").count(), figures);
+    assert!(figures >= 26, "{figures}");
+    assert_eq!(2 * page.matches("role=\"img\" aria-label=\"").count(), figures);
     for target in page.split("href=\"#").skip(1).map(|rest| rest.split('"').next().unwrap()) {
         assert!(page.contains(&format!("id=\"{target}\"")), "{target}");
     }
@@ -129,13 +133,28 @@ fn the_report_can_be_read_alone() {
     // What comes first, in both pages and in Markdown.
     for text in [&page, &String::from_utf8(made["index.html"].clone()).unwrap()] {
         let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what}"));
+        assert!(place("<h1>") < place("<p class=\"finding\">People preferred "));
+        assert!(place("<p class=\"finding\">") < place("<figure class=\"overview\">"));
+        assert!(place("<figure class=\"overview\">") < place("alt=\"body-centred, none on the asteroid\""));
+        assert!(place("alt=\"body-centred, none on the asteroid\"") < place("<dt>Compared</dt>"));
         assert!(place("<dt>Compared</dt>") < place("<dt>Next</dt>"));
-        assert!(place("<dt>Next</dt>") < place("alt=\"body-centred, none on the asteroid\""));
-        assert!(place("alt=\"body-centred, none on the asteroid\"") < place("id=\"contrasts\""));
+        assert!(place("<dt>Next</dt>") < place("id=\"contrasts\""));
+        for id in ["bu", "bi", "bp", "su", "si", "sp"] {
+            assert!(text.contains(&format!("<span><code>{id}</code> ")), "tables call it {id}");
+        }
         assert!(!text.replace('\u{a0}', " ").contains("p = 0.000"), "a small p is said to be small");
         assert!(text.contains("&lt; 0.001"));
     }
     let gallery = String::from_utf8(made["index.html"].clone()).unwrap();
+    // Pairs in words, with what people said of them.
+    let votes: serde_json::Value = serde_json::from_slice(&made["tables/votes.json"]).unwrap();
+    let [left, none, right] = ["left", "none", "right"].map(|of| votes["Q8"][of].as_u64().unwrap());
+    assert_eq!(left + none + right, 18);
+    let said = format!(
+        "Question 8, sphere: body-centred, integrated (left) beside simple cubic, integrated: {left} left, {right} right, {none} no \
+         preference <code>ss_bi | ss_si</code>"
+    );
+    assert!(gallery.contains(&said), "{said}");
     assert!(gallery.contains("href=\"report.html\"") && page.contains("href=\"index.html\""));
     assert!(
         gallery.contains("Pairs, as shown to respondents")

@@ -100,6 +100,29 @@ fn the_page_holds_every_mesh_at_every_resolution() {
         assert_eq!(levels[1]["spacing"], record["spacing"]);
         assert_eq!(levels[0]["spacing"].as_f64().unwrap() * 2.0, record["spacing"].as_f64().unwrap());
     }
+    // It opens on the mesh that lies nearest to its isosurface and the one that lies farthest from it, of the object where they are
+    // farthest apart in spacings.
+    let study: toml::Table = fs::read_to_string(fixture.config()).unwrap().parse().unwrap();
+    let mut widest = (0.0, None);
+    for object in study["objects"].as_array().unwrap() {
+        let id = object["id"].as_str().unwrap();
+        let mut own: Vec<(f64, &str)> = meshes
+            .iter()
+            .filter(|mesh| mesh["object"] == id)
+            .map(|mesh| {
+                let mean = mesh["levels"][1]["numbers"]["distance_mean"].as_f64().unwrap();
+                (mean / object["stimulus_spacing"].as_float().unwrap(), mesh["id"].as_str().unwrap())
+            })
+            .collect();
+        own.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (near, far) = (own[0], own[own.len() - 1]);
+        if far.0 - near.0 > widest.0 {
+            widest = (far.0 - near.0, Some((id, near.1, far.1)));
+        }
+    }
+    let (object, near, far) = widest.1.unwrap();
+    assert_eq!(catalogue["opening"], serde_json::json!([near, far]));
+    assert_eq!(catalogue["first"], object);
     assert!(page(&fixture, "index.html").contains("href=\"viewer.html\""));
     assert!(viewer.contains("The licence &lt;of&gt; the library"));
     for forbidden in ["<link", "<script src", "@import", "http-equiv"] {

@@ -13,26 +13,14 @@ const STEP = 1.15;
 
 /** Room around the surfaces at first. */
 const MARGIN = 1.04;
-/** In how many directions, and at how many heights, a surface is looked at for its size. */
-const TURNS = 24;
-const SLICES = 24;
+/** Corners that a surface is looked at for its size: of more, some are left out. */
+const CORNERS = 20000;
+/** How often the middle is moved: each time what is off is a small part of what was. */
+const STEPS = 4;
 
-/** Of slices of a surface, by height: the farthest distance from the vertical through a middle, and the height above it. */
-function outline(geometry, center) {
-  const { array } = geometry.attributes.position;
-  let [low, high] = [Infinity, -Infinity];
-  for (let i = 2; i < array.length; i += 3) {
-    low = Math.min(low, array[i]);
-    high = Math.max(high, array[i]);
-  }
-  const radii = new Array(SLICES).fill(0);
-  const slice = (height) => Math.min(SLICES - 1, Math.floor((SLICES * (height - low)) / (high - low || 1)));
-  for (let i = 0; i < array.length; i += 3) {
-    const at = slice(array[i + 2]);
-    radii[at] = Math.max(radii[at], Math.hypot(array[i] - center.x, array[i + 1] - center.y));
-  }
-  const edge = (place) => low + ((high - low) * place) / SLICES - center.z;
-  return radii.flatMap((radius, place) => (radius > 0 ? [[radius, edge(place)], [radius, edge(place + 1)]] : []));
+/** The smallest and the largest of what is measured. */
+function ends(all, measure) {
+  return all.reduce(([low, high], of) => [Math.min(low, measure(of)), Math.max(high, measure(of))], [Infinity, -Infinity]);
 }
 
 ColorManagement.enabled = false;
@@ -73,9 +61,10 @@ export class Views {
     const { center } = this.around();
     const up = this.catalogue.elevation_rad;
     const direction = new Vector3(Math.cos(up), Math.cos(up), Math.sin(up)).normalize();
-    controls.target.copy(center);
-    camera.position.copy(center).addScaledVector(direction, this.nearest(center, direction));
-    camera.lookAt(center);
+    const { target, distance } = this.fitted(center, direction);
+    controls.target.copy(target);
+    camera.position.copy(target).addScaledVector(direction, distance);
+    camera.lookAt(target);
     // The light stands to the camera as it does to that of the first frame.
     camera.updateMatrixWorld();
     const light = new Vector3(...this.catalogue.shading.light);
@@ -84,26 +73,35 @@ export class Views {
     this.later();
   }
 
-  /** How far from the middle the camera shows all of both surfaces in both panes, however they are turned about the vertical. */
-  nearest(center, direction) {
-    const outlines = this.sides.filter((side) => side.mesh.visible).flatMap((side) => outline(side.mesh.geometry, center));
-    if (outlines.length === 0) return 1 / Math.sin(this.fov / 2);
+  /** Where to look, and from how far, such that both surfaces just fit into both panes, each in the middle of its pane. */
+  fitted(center, direction) {
     const right = new Vector3(-direction.y, direction.x, 0).normalize();
     const upwards = new Vector3().crossVectors(direction, right);
-    let most = 0;
-    for (const { clientWidth, clientHeight } of this.panes) {
-      const aspect = clientWidth / clientHeight;
-      const tangent = Math.tan(this.fov / 2) / Math.min(aspect, 1);
-      for (const [radius, height] of outlines) {
-        for (let step = 0; step < TURNS; step += 1) {
-          const angle = (2 * Math.PI * step) / TURNS;
-          const at = new Vector3(radius * Math.cos(angle), radius * Math.sin(angle), height);
-          const [x, y] = [Math.abs(at.dot(right)) / aspect, Math.abs(at.dot(upwards))];
-          most = Math.max(most, at.dot(direction) + Math.max(x, y) / tangent);
-        }
+    const seen = this.sides.filter((side) => side.mesh.visible).flatMap(({ mesh }) => {
+      const { array, count } = mesh.geometry.attributes.position;
+      const every = Math.ceil(count / CORNERS);
+      const corners = [];
+      for (let i = 0; i < count; i += every) {
+        const at = new Vector3().fromArray(array, 3 * i).sub(center);
+        corners.push([at.dot(right), at.dot(upwards), at.dot(direction)]);
       }
+      return corners;
+    });
+    if (seen.length === 0) return { target: center, distance: 1 / Math.sin(this.fov / 2) };
+    // The narrower pane of two decides; both are as wide and as high to a pixel.
+    const { clientWidth, clientHeight } = this.panes[0];
+    const aspect = clientWidth / clientHeight || 1;
+    const tangent = Math.tan(this.fov / 2) / Math.min(aspect, 1);
+    let [x, y, distance] = [0, 0, 0];
+    for (let step = 0; step < STEPS; step += 1) {
+      [, distance] = ends(seen, ([r, u, d]) => d + Math.max(Math.abs(r - x) / aspect, Math.abs(u - y)) / tangent);
+      const [left, most] = ends(seen, ([r, , d]) => (r - x) / (distance - d));
+      const [low, high] = ends(seen, ([, u, d]) => (u - y) / (distance - d));
+      x += ((left + most) / 2) * distance;
+      y += ((low + high) / 2) * distance;
     }
-    return most * MARGIN;
+    const target = center.clone().addScaledVector(right, x).addScaledVector(upwards, y);
+    return { target, distance: MARGIN * distance };
   }
 
   /** A ball that holds both surfaces. */
