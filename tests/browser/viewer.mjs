@@ -86,13 +86,22 @@ async function panes(page) {
       let surface = 0;
       const colours = new Set();
       let digest = 0;
+      // What of the pane's width and height the surface takes, and how near it comes to an edge.
+      const [low, high] = [[1, 1], [0, 0]];
       for (let i = 0; i < data.length; i += 4) {
-        if (background.some((value, k) => Math.abs(data[i + k] - value) > 2)) surface += 1;
+        if (background.some((value, k) => Math.abs(data[i + k] - value) > 2)) {
+          surface += 1;
+          const at = [((i / 4) % picture.width) / picture.width, Math.floor(i / 4 / picture.width) / picture.height];
+          // The rim is of the page, and so are the corners, which are round.
+          const away = at.map((of, k) => Math.min(of, 1 - of) * [picture.width, picture.height][k]);
+          const isOfPage = Math.min(...away) < 2 || Math.max(...away) < 8;
+          for (const k of isOfPage ? [] : [0, 1]) [low[k], high[k]] = [Math.min(low[k], at[k]), Math.max(high[k], at[k])];
+        }
         const colour = data[i] << 16 | data[i + 1] << 8 | data[i + 2];
         colours.add(colour);
         digest = (Math.imul(digest, 31) + colour) | 0;
       }
-      return { share: surface / (data.length / 4), colours: colours.size, digest };
+      return { share: surface / (data.length / 4), colours: colours.size, digest, low, high };
     }, png.toString('base64')));
   }
   return found;
@@ -152,6 +161,27 @@ for (const [name, viewport] of [['laptop', LAPTOP], ['phone', PHONE]]) {
       await close(page);
     });
   }
+}
+
+for (const [name, viewport] of [['laptop', LAPTOP], ['phone', PHONE]]) {
+  test(`it opens on the pair that differs most, as large as the panes allow (${name})`, { skip }, async () => {
+    const page = await open(viewport, '', { hasTouch: name === 'phone', isMobile: name === 'phone' });
+    const [left, right] = (await shown(page)).split(' ');
+    const distances = Object.values(table('accuracy')).map(({ id, distance_mean: mean }) => [id, Number(mean)]);
+    const spread = (object) => {
+      const own = distances.filter(([id]) => id.startsWith(object)).sort((a, b) => a[1] - b[1]);
+      return { difference: own.at(-1)[1] - own[0][1], pair: [own[0][0], own.at(-1)[0]] };
+    };
+    const widest = ['ss_', 'as_', 'bs_'].map(spread).sort((a, b) => b.difference - a.difference)[0];
+    assert.deepEqual([left, right], widest.pair);
+    await page.keyboard.press('1');
+    await ready(page);
+    const found = await panes(page);
+    const reached = found.map(({ low, high }) => Math.max(high[0] - low[0], high[1] - low[1]));
+    assert.ok(Math.max(...reached) > 0.9 && Math.min(...reached) > 0.8, `${reached} of the panes`);
+    for (const { low, high } of found) assert.ok(Math.min(...low) > 0.01 && Math.max(...high) < 0.99, `${low} to ${high}`);
+    await close(page);
+  });
 }
 
 test('numbers are those of the tables', { skip }, async () => {
@@ -371,10 +401,20 @@ test('fingers turn both meshes and move nearer, and the page stays where it is',
   await page.locator('.modes label').nth(3).tap();
   await page.waitForFunction(() => document.querySelector('.stage').dataset.shown.includes(' quality '));
   await changes('a mode by a tap');
-  // Buttons are large enough for a finger.
-  const small = await page.locator('.modes label, .choices button, select').evaluateAll((all) => all
-    .filter((of) => of.getBoundingClientRect().height < 24).map((of) => of.textContent));
+  // Controls are large enough for a finger.
+  await page.locator('#help').tap();
+  const small = await page.locator('.modes label, .choices button, .choices input[type="range"], select, summary, header a, dialog button').evaluateAll((all) => all
+    .map((of) => [of.id || of.textContent, of.getBoundingClientRect().toJSON()])
+    .filter(([, { width, height }]) => width < 44 || height < 44));
   assert.deepEqual(small, []);
+  await page.locator('#close-keys').tap();
+  // A finger that moves up scrolls the page, and turns nothing.
+  last = await digests(page);
+  await device.send('Input.synthesizeScrollGesture', { x, y, yDistance: -300, gestureSourceType: 'touch' });
+  assert.ok(await page.evaluate(() => scrollY) > 100, 'the page scrolls');
+  await page.evaluate(() => scrollTo(0, 0));
+  await ready(page);
+  assert.deepEqual(await digests(page), last);
   await close(page);
 });
 
@@ -390,7 +430,25 @@ test('an address leads to a view, and a view has an address', { skip }, async ()
   assert.equal(new URL(page.url()).hash, '#left=ss_su&right=ss_bp&mode=flat&factor=2');
   await page.evaluate(() => { location.hash = '#left=as_bi&right=nothing&mode=quality&factor=99'; });
   await page.waitForFunction(() => document.querySelector('.stage').dataset.shown === 'as_bi ss_bp quality 2');
+  const told = await page.locator('#address p').allTextContents();
+  assert.ok(told.length === 2 && told[0].includes('right=nothing') && told[1].includes('factor=99'), told.join('\n'));
   await close(page);
+});
+
+test('a bad address says what is bad, and what there is', { skip }, async () => {
+  for (const viewport of [LAPTOP, PHONE]) {
+    const page = await open(viewport, '#left=zz&colour=red');
+    assert.ok(await page.locator('#address').isVisible());
+    const [unknown, key] = await page.locator('#address p').allTextContents();
+    assert.ok(unknown.includes('left=zz'), unknown);
+    for (const object of ['ss', 'as', 'bs']) for (const method of ['bu', 'bi', 'bp', 'su', 'si', 'sp']) assert.ok(unknown.includes(`${object}_${method}`), unknown);
+    assert.ok(key.includes('“colour”') && key.includes('left, right, mode, factor'), key);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'too wide');
+    // What follows is good again.
+    await page.evaluate(() => { location.hash = '#left=as_bi'; });
+    await page.waitForFunction(() => document.querySelector('#address').hidden);
+    await close(page);
+  }
 });
 
 test('without WebGL the page says so, and has its numbers', { skip }, async () => {

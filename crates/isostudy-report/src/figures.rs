@@ -21,19 +21,21 @@ mod prediction;
 mod preferences;
 mod respondents;
 mod scatter;
+mod sheet;
 mod stages;
 mod style;
 mod sweep;
 mod worths;
 
 use crate::figure::Figure;
-use draft::{Sheet, Unfinished};
+use draft::Unfinished;
 pub use edge_groups::{KindShare, TableQuality, edge_groups_figure};
 pub use error::FigureError;
 pub use history::history_figure;
 use isostudy_inference::{Preferences, Results};
 pub use power::power_figure;
 use rayon::prelude::*;
+use sheet::Sheet;
 
 pub use sweep::sweep_figures;
 

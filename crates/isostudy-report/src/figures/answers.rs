@@ -1,8 +1,9 @@
 //! Answers per question: left, none and right, stacked and centred on none.
 
 use super::canvas::{Align, BLACK, Canvas};
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
 use super::legend::Swatch;
+use super::sheet::Sheet;
 use super::style::{Fill, LEFT, NONE, RIGHT};
 use isostudy_design::Study;
 use isostudy_inference::tally::{QuestionCount, Tally};

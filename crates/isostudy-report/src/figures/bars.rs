@@ -2,8 +2,9 @@
 
 use super::axis::Axis;
 use super::canvas::{Align, BLACK, Canvas, WHITE, text_width};
-use super::draft::{Sheet, canvas_with_legend};
+use super::draft::canvas_with_legend;
 use super::legend::{self, Swatch};
+use super::sheet::Sheet;
 use super::style::{Fill, GRID};
 use isostudy_statistics::interval::Interval;
 

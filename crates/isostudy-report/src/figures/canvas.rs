@@ -4,9 +4,10 @@
 //! plotters backends do not agree on text: what a font size means and where the baseline falls differ, and neither is
 //! what a layout needs. Shapes therefore give the em and the baseline, and the painter translates.
 
-use super::draft::Sheet;
 use super::error::FigureError;
 use super::palette;
+pub(super) use super::palette::{BLACK, Colour, WHITE};
+use super::sheet::Sheet;
 use plotters::backend::{BitMapBackend, SVGBackend};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -19,10 +20,6 @@ const SCALE: f64 = 2.0;
 /// The family as SVG viewers look for it; also the name under which the embedded font is registered.
 const FAMILY: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
 static FONT: &[u8] = include_bytes!("../../../../assets/fonts/DejaVuSans.ttf");
-
-pub(super) type Colour = RGBColor;
-pub(super) const BLACK: Colour = RGBColor(0x22, 0x22, 0x22);
-pub(super) const WHITE: Colour = RGBColor(0xff, 0xff, 0xff);
 
 /// Which part of a text its x belongs to.
 #[derive(Debug, Clone, Copy, PartialEq)]

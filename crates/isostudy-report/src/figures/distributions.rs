@@ -3,7 +3,8 @@
 use super::axis::Axis;
 use super::bars::{frame, room_for_labels};
 use super::canvas::{Align, BLACK, Canvas, text_width};
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
+use super::sheet::Sheet;
 use super::style;
 use super::style::Fill;
 use isostudy_design::record::{Distribution, MeshRecord, Purpose};

@@ -4,9 +4,10 @@ use super::axis::Axis;
 use super::bars::frame;
 use super::canvas::{Align, BLACK, Canvas, text_width};
 use super::distributions::draw_box;
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
 use super::error::FigureError;
 use super::legend::Swatch;
+use super::sheet::Sheet;
 use super::style::{Fill, LEFT, RIGHT};
 use crate::figure::Figure;
 

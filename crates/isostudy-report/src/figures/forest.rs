@@ -2,9 +2,9 @@
 
 use super::axis::Axis;
 use super::canvas::{Align, BLACK, Canvas, WHITE, text_width, wrapped};
-use super::draft::Sheet;
 use super::legend;
 use super::marks::Mark;
+use super::sheet::Sheet;
 use super::style::GRID;
 use isostudy_statistics::interval::Interval;
 

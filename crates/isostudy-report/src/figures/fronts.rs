@@ -3,10 +3,11 @@
 use super::OVERVIEW;
 use super::axis::Axis;
 use super::canvas::{BLACK, Colour};
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
+use super::sheet::Sheet;
 use super::style;
 use isostudy_design::{Method, MethodId, Study};
 use isostudy_inference::decision::{Axes, Front, FrontPoint, LEAST_ERROR, ObjectCandidates, Standing};

@@ -2,10 +2,11 @@
 
 use super::OVERVIEW;
 use super::axis::Axis;
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
+use super::sheet::Sheet;
 use crate::words::capital;
 use isostudy_inference::conclusions::Conclusion;
 use isostudy_inference::glance;

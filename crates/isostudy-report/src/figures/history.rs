@@ -1,11 +1,12 @@
 //! Runs that were kept: totals from one to the next.
 
 use super::axis::Axis;
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
 use super::error::FigureError;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
+use super::sheet::Sheet;
 use super::style;
 use crate::figure::Figure;
 use isostudy_timing::history::Step;

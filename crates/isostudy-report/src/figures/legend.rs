@@ -1,8 +1,8 @@
 //! Legends: swatches with names, in as many rows as they need.
 
 use super::canvas::{Align, BLACK, Canvas, Colour, WHITE, text_width, wrapped};
-use super::draft::Sheet;
 use super::marks::Mark;
+use super::sheet::Sheet;
 use super::style::Fill;
 
 /// What stands before a name.

@@ -2,8 +2,9 @@
 
 use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest, rows_of_panels};
-use super::draft::{Sheet, Unfinished};
+use super::draft::Unfinished;
 use super::legend::Swatch;
+use super::sheet::Sheet;
 use super::style;
 use isostudy_design::ConfigurationId;
 use isostudy_design::published::BenchmarkRow;

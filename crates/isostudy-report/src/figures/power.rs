@@ -2,11 +2,12 @@
 
 use super::axis::Axis;
 use super::canvas::BLACK;
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
 use super::error::FigureError;
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
+use super::sheet::Sheet;
 use crate::figure::Figure;
 use isostudy_inference::power::{Assumptions, Power};
 

@@ -2,10 +2,11 @@
 
 use super::axis::Axis;
 use super::canvas::BLACK;
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
 use super::legend::Swatch;
 use super::marks::Mark;
 use super::scatter::Scatter;
+use super::sheet::Sheet;
 use super::style::object_colour;
 use isostudy_design::{Comparison, Study};
 use isostudy_inference::prediction::{MetricPrediction, Prediction, Scale};

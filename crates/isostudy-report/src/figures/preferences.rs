@@ -3,8 +3,9 @@
 use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest, rows_of_panels};
 use super::canvas::{BLACK, WHITE};
-use super::draft::{Sheet, Unfinished};
+use super::draft::Unfinished;
 use super::legend::Swatch;
+use super::sheet::Sheet;
 use super::style::{self, Fill};
 use isostudy_design::published::PreferenceKind;
 use isostudy_design::{MethodId, Study};

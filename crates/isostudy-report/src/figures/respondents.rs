@@ -2,10 +2,11 @@
 
 use super::axis::Axis;
 use super::bars::{Bar, BarPanel, Cluster, Slot, rows_of_panels};
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
+use super::sheet::Sheet;
 use super::style::{Fill, LEFT};
 use isostudy_inference::majorities::Majorities;
 use isostudy_statistics::Screening;

@@ -1,9 +1,10 @@
 //! Stage times stacked: an object a panel; below, the same without sampling, which drowns the rest on costly fields.
 
 use super::bars::{Bar, BarPanel, Cluster, Slot, largest, rows_of_panels};
-use super::draft::{Sheet, Unfinished};
+use super::draft::Unfinished;
 use super::legend::Swatch;
 use super::meshes::median_of;
+use super::sheet::Sheet;
 use super::style;
 use isostudy_design::ConfigurationId;
 use isostudy_design::record::BenchSample;

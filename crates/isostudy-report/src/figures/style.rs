@@ -5,7 +5,8 @@
 
 use super::canvas::{BLACK, Canvas, Colour, WHITE};
 use super::marks::{Filling, Mark};
-use super::palette;
+use super::palette::{self, DARK_INK, HUES, LIGHT_INK, tint};
+pub(super) use super::palette::{GRID, IDEAL};
 use isostudy_design::{MethodId, Study};
 use plotters::style::RGBColor;
 
@@ -17,17 +18,9 @@ pub(super) struct Fill {
     pub(super) stripes: bool,
 }
 
-/// What is hoped for, under what was measured.
-pub(super) const IDEAL: Colour = RGBColor(0x99, 0x99, 0x99);
-pub(super) const GRID: Colour = RGBColor(0xdd, 0xdd, 0xdd);
 pub(super) const LEFT: Colour = RGBColor(0x00, 0x72, 0xb2);
 pub(super) const NONE: Colour = RGBColor(0xdc, 0xdc, 0xdc);
 pub(super) const RIGHT: Colour = RGBColor(0xe6, 0x9f, 0x00);
-
-/// What is printed on an area whose colour is the same on white and on dark paper. Not quite black and white, so that they stay
-/// too, unlike ink and paper.
-pub(super) const DARK_INK: Colour = RGBColor(0x1c, 0x1c, 0x1c);
-pub(super) const LIGHT_INK: Colour = RGBColor(0xfd, 0xfd, 0xfd);
 
 /// With more methods than this, their names would take more room than what is drawn.
 const MOST_NAMED: usize = 8;
@@ -106,17 +99,6 @@ pub(super) fn ink_on(colour: Colour) -> Colour {
         (false, false) => DARK_INK,
     }
 }
-
-/// Hues of levels, by place: grey, orange, blue, green, purple, sky blue, vermilion. As many as marks have shapes.
-pub(super) const HUES: [Colour; 7] = [
-    RGBColor(0x4d, 0x4d, 0x4d),
-    RGBColor(0xe6, 0x9f, 0x00),
-    RGBColor(0x00, 0x72, 0xb2),
-    RGBColor(0x00, 0x9e, 0x73),
-    RGBColor(0xcc, 0x79, 0xa7),
-    RGBColor(0x56, 0xb4, 0xe9),
-    RGBColor(0xd5, 0x5e, 0x00),
-];
 
 /// How many ways of filling there are.
 const FILLINGS: usize = 4;
@@ -211,8 +193,39 @@ pub(super) fn stages() -> [(&'static str, Fill); 5] {
     ]
 }
 
-/// A colour that lets the paper through.
-pub(super) fn tint(colour: Colour, paper: Colour) -> Colour {
-    let mixed = |c: u8, paper: u8| (f64::from(c) * 0.38 + f64::from(paper) * 0.62).round() as u8;
-    RGBColor(mixed(colour.0, paper.0), mixed(colour.1, paper.1), mixed(colour.2, paper.2))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn luminance(RGBColor(r, g, b): Colour) -> f64 {
+        let channel = |c: u8| {
+            let c = f64::from(c) / 255.0;
+            if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * channel(r) + 0.7152 * channel(g) + 0.0722 * channel(b)
+    }
+
+    /// As in the Web Content Accessibility Guidelines.
+    fn contrast(a: Colour, b: Colour) -> f64 {
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn what_is_drawn_stands_out_from_dark_paper() {
+        let dark = palette::on_dark;
+        assert!(contrast(dark(BLACK), palette::DARK_PAPER) >= 4.5);
+        // Areas, marks and lines: the guidelines ask for 3.
+        let stages = stages().map(|(_, fill)| fill.colour);
+        let objects: Vec<Colour> = (0..5).map(object_colour).collect();
+        for colour in [&HUES[..], &stages, &objects, &[LEFT, NONE, RIGHT, IDEAL]].concat() {
+            let found = contrast(dark(colour), palette::DARK_PAPER);
+            assert!(found >= 3.0, "{colour:?}: {found}");
+        }
+        // What is printed on bars.
+        for fill in [LEFT, NONE, RIGHT] {
+            let found = contrast(dark(ink_on(fill)), dark(fill));
+            assert!(found >= 4.5, "{fill:?}: {found}");
+        }
+    }
 }

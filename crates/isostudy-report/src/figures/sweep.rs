@@ -1,10 +1,11 @@
 //! A sweep: time against samples, time per triangle, speed-up against threads, quality against cost.
 
 use super::axis::Axis;
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
 use super::error::FigureError;
 use super::legend::Swatch;
 use super::scatter::Scatter;
+use super::sheet::Sheet;
 use super::style;
 use crate::figure::Figure;
 use isostudy_design::{MethodId, Study};

@@ -1,10 +1,11 @@
 //! Davidson's worths with their intervals, group by group.
 
 use super::axis::Axis;
-use super::draft::{Sheet, Unfinished, canvas_with_legend};
+use super::draft::{Unfinished, canvas_with_legend};
 use super::forest::{self, Block, Row};
 use super::legend::Swatch;
 use super::marks::Mark;
+use super::sheet::Sheet;
 use crate::words::capital;
 use isostudy_design::Study;
 use isostudy_inference::ballots::{ALL_METHODS, BallotGroup};
