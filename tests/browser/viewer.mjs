@@ -410,8 +410,10 @@ test('fingers turn both meshes and move nearer, and the page stays where it is',
   await page.locator('#close-keys').tap();
   // A finger that moves up scrolls the page, and turns nothing.
   last = await digests(page);
-  await device.send('Input.synthesizeScrollGesture', { x, y, yDistance: -300, gestureSourceType: 'touch' });
-  assert.ok(await page.evaluate(() => scrollY) > 100, 'the page scrolls');
+  await touch('touchStart', [x, y]);
+  for (let step = 1; step <= 10; step += 1) await touch('touchMove', [x, y - 20 * step]);
+  await touch('touchEnd');
+  await page.waitForFunction(() => scrollY > 100);
   await page.evaluate(() => scrollTo(0, 0));
   await ready(page);
   assert.deepEqual(await digests(page), last);

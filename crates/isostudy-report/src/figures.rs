@@ -76,10 +76,11 @@ fn drafts(results: &Results<'_>, sheet: Sheet) -> Vec<Unfinished> {
     let inputs = &results.inputs;
     let mut drafts = Vec::new();
     let preferred = results.preferences.as_ref().filter(|_| inputs.answers.is_some());
+    let times_decide = crate::wants::busy(inputs).is_none();
     let overview = match preferred.and_then(|found| glance::overview(&found.concluded(), sheet)) {
         Some(contrasts) => Some(contrasts),
         None => crate::telling::telling(inputs.study, inputs.meshes)
-            .and_then(|of| fronts::overview(inputs.study, &results.decision, of.object, sheet)),
+            .and_then(|of| fronts::overview(inputs.study, &results.decision, of.object, times_decide, sheet)),
     };
     drafts.extend(meshes::triangles(inputs, sheet));
     drafts.extend(meshes::pass_times(inputs, sheet));

@@ -31,6 +31,14 @@ pub(super) struct Row {
     pub(super) remark: String,
 }
 
+impl Row {
+    /// Where what is drawn of it begins and ends.
+    fn ends(&self) -> Option<(f64, f64)> {
+        let interval = self.interval.map(|interval| (interval.low, interval.high));
+        interval.or(self.value.map(|value| (value, value)))
+    }
+}
+
 /// Rows under a heading.
 pub(super) struct Block {
     pub(super) heading: String,
@@ -117,8 +125,14 @@ pub(super) fn draw(
                     over_lines(canvas, row.label.clone(), (0.0, baseline), em, Align::Start);
                     // Of several columns the last, as far as there is room.
                     let last = row.remark.rsplit('\t').next().unwrap_or_default();
-                    if text_width(&row.label, em) + em + text_width(last, em) <= width {
+                    let room = text_width(last, em);
+                    let (from, to) = row.ends().map_or((0.0, width), |(low, high)| (x(low), x(high)));
+                    if text_width(&row.label, em) + em + room <= width {
                         over_lines(canvas, last.into(), (width, baseline), em, Align::End);
+                    } else if to + em + room <= width {
+                        over_lines(canvas, last.into(), (width, middle + 0.36 * em), em, Align::End);
+                    } else if from - em >= room {
+                        over_lines(canvas, last.into(), (0.0, middle + 0.36 * em), em, Align::Start);
                     }
                 }
             }

@@ -52,16 +52,21 @@ pub(super) fn draft(study: &Study, decision: &Decision<'_>, sheet: Sheet) -> Opt
 }
 
 /// The fronts of the object on which methods differ most: without a legend, since their codes stand beside the marks. On a narrow
-/// sheet the first front alone. `object` is its place among the study's.
+/// sheet the first front alone. Times that decide nothing are not shown. `object` is its place among the study's.
 pub(super) fn overview(
     study: &Study,
     decision: &Decision<'_>,
     object: usize,
+    times_decide: bool,
     sheet: Sheet,
 ) -> Option<Unfinished> {
     let id = &study.file.objects.get(object)?.id;
-    let (of, fronts) = decision.each().find(|(of, fronts)| of.object.id == *id && !fronts.is_empty())?;
-    let shown = &fronts[..if sheet.is_narrow() { 1 } else { fronts.len() }];
+    let (of, fronts) = decision.each().find(|(of, _)| of.object.id == *id)?;
+    let fronts = fronts.iter().filter(|front| times_decide || front.axes == Axes::TrianglesError);
+    let shown: Vec<&Front> = fronts.take(if sheet.is_narrow() { 1 } else { Axes::ALL.len() }).collect();
+    if shown.is_empty() {
+        return None;
+    }
     let width = sheet.width() / shown.len() as f64;
     let (mut canvas, top) = canvas_with_legend(sheet, &[], ROW);
     for (column, front) in shown.iter().enumerate() {

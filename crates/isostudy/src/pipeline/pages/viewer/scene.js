@@ -23,6 +23,25 @@ function ends(all, measure) {
   return all.reduce(([low, high], of) => [Math.min(low, measure(of)), Math.max(high, measure(of))], [Infinity, -Infinity]);
 }
 
+/** Keeps one finger's moves from the controls until it goes sideways: the browser says only after the first that it scrolls. */
+function leaveUpAndDown(canvas) {
+  const fingers = new Map();
+  let turns = false;
+  canvas.addEventListener('pointerdown', ({ pointerType, pointerId, clientX, clientY }) => {
+    if (pointerType !== 'touch') return;
+    fingers.set(pointerId, [clientX, clientY]);
+    turns = fingers.size > 1;
+  }, true);
+  canvas.addEventListener('pointermove', (event) => {
+    const start = fingers.get(event.pointerId);
+    if (!start || turns) return;
+    const [across, along] = [Math.abs(event.clientX - start[0]), Math.abs(event.clientY - start[1])];
+    turns = across > along;
+    if (!turns) event.stopImmediatePropagation();
+  }, true);
+  for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, ({ pointerId }) => fingers.delete(pointerId), true);
+}
+
 ColorManagement.enabled = false;
 
 export class Views {
@@ -49,6 +68,7 @@ export class Views {
     this.controls = new OrbitControls(this.camera, canvas);
     // The controls take every finger. One that moves up or down is left to the page, which is higher than a phone's screen.
     canvas.style.touchAction = 'pan-y';
+    leaveUpAndDown(canvas);
     this.controls.addEventListener('change', () => this.later());
     new ResizeObserver(() => this.later()).observe(canvas);
     canvas.addEventListener('webglcontextrestored', () => this.later());
