@@ -52,26 +52,22 @@ pub(super) fn contrasts(rows: &[Concluded<'_>], sheet: Sheet) -> Option<Unfinish
 /// Of the contrasts over all answers more are not read at once.
 const MOST_AT_ONCE: usize = 12;
 
-/// The contrasts over all answers alone, such that they fit on a screen; nothing if there are none.
+/// The contrasts over all answers alone, such that they fit on a screen; nothing if there are none, or too many for that.
 pub(super) fn overview(rows: &[Concluded<'_>], sheet: Sheet) -> Option<Unfinished> {
     let whole: Vec<&Concluded<'_>> =
-        rows.iter().filter(|(row, _)| !row.is_difference && row.place.is_empty()).collect();
-    let shown = &whole[..whole.len().min(MOST_AT_ONCE)];
-    if shown.is_empty() {
+        rows.iter().filter(|(row, _)| !row.is_difference && row.is_whole).collect();
+    if whole.is_empty() || whole.len() > MOST_AT_ONCE {
         return None;
     }
-    let rows = shown.iter().map(|of| Row { label: capital(&of.0.pair()), ..forest_row(of) }).collect();
+    let rows = whole.iter().map(|of| Row { label: capital(&of.0.pair()), ..forest_row(of) }).collect();
     let blocks = [Block { heading: String::new(), rows }];
     let legend = legend("a preference holds");
     let (mut canvas, top) = canvas_with_legend(sheet, &legend, forest::height(sheet, &blocks));
     forest::remark_heading(&mut canvas, COLUMNS, top);
     forest::draw(&mut canvas, &blocks, &Axis::spanning(0.0, 1.0), SHARES, 0.5, top);
-    let mut caption: String = "What people preferred, over all their answers. Share: mean over people of their answers for the first, an answer \
+    let caption = "What people preferred, over all their answers. Share: mean over people of their answers for the first, an answer \
                    without preference counting half. The figure of contrasts has the same for each object and for parts of the methods."
         .into();
-    if shown.len() < whole.len() {
-        caption.push_str(&format!(" It also has the other {} over all answers.", whole.len() - shown.len()));
-    }
     Some(Unfinished { name: OVERVIEW, caption, canvas })
 }
 
