@@ -214,20 +214,65 @@ fn the_smallest_study_is_sound_and_says_its_power() {
     assert!(code == Some(0) && said.ends_with(": no faults\n"), "{said}");
 
     let folder = out.path().to_str().unwrap();
-    let (code, said, _) = run(&["power", "--studies", "200", "--participants", "48,6", "--out", folder]);
-    assert!(code == Some(0) && said.contains("N = 6 | N = 48"), "{said}");
-    let table = std::fs::read_to_string(out.path().join("power.csv")).unwrap();
-    let powers = |n: &str| -> Vec<f64> {
-        let rows = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
-        rows.filter(|row| row[5] == n && row[4] == "0.77").map(|row| row[6].parse().unwrap()).collect()
+    let power = |more: &[&str]| {
+        let (code, said, warned) = run(&[&["power", "--studies", "200", "--out", folder], more].concat());
+        assert_eq!(code, Some(0), "{warned}");
+        (said, warned, std::fs::read_to_string(out.path().join("power.csv")).unwrap())
     };
+    let column = |table: &str, name: &str, rows: &[(&str, &str)]| -> Vec<f64> {
+        let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let head = lines.next().unwrap();
+        let place = |name: &str| head.iter().position(|&column| column == name).unwrap();
+        let own = lines.filter(|row| rows.iter().all(|(name, value)| row[place(name)] == *value));
+        own.map(|row| row[place(name)].parse().unwrap()).collect()
+    };
+    let (said, warned, table) = power(&["--participants", "48,6"]);
+    assert!(
+        said.contains("| N = 6 ") && said.contains("| N = 48 ") && said.contains("| N for 0.8 "),
+        "{said}"
+    );
+    assert!(warned.contains("no answers to estimate it from"), "{warned}");
+    let powers =
+        |table: &str, name: &str, n: &str| column(table, name, &[("participants", n), ("share", "0.77")]);
     // Three contrasts, all answers and each of two objects, and two questions.
-    assert_eq!(powers("6").len(), 5);
-    assert!(powers("6").iter().zip(powers("48")).all(|(few, many)| few + 0.3 < many), "{table}");
+    let judged = powers(&table, "power_corrected", "6");
+    assert_eq!(judged.len(), 5);
+    let many = powers(&table, "power_corrected", "48");
+    assert!(judged.iter().zip(&many).all(|(few, many)| few + 0.3 < *many), "{table}");
+    let alone = powers(&table, "power_uncorrected", "6");
+    assert!(judged.iter().zip(&alone).all(|(judged, alone)| judged <= alone) && judged != alone, "{table}");
     assert!(out.path().join("power.png").is_file() && out.path().join("power.svg").is_file());
-    for (wrong, place) in
-        [("--shares=1.5", "above 0 and below 1"), ("--person-sd=-1", "0 to 100"), ("--studies=3", "100..")]
-    {
+    // A liking for a side hides preferences; so does a spread between people.
+    let (_, _, table) = power(&["--participants", "6,48", "--side-bias", "0,2", "--spread", "1"]);
+    let found = |side: &str| {
+        column(&table, "power_corrected", &[("participants", "48"), ("share", "0.77"), ("side_bias", side)])
+    };
+    assert!(found("0").iter().zip(found("2")).all(|(without, with)| with + 0.05 < *without), "{table}");
+    assert_eq!(found("0"), many);
+    // Nine people each wholly for one and nine for the other are spread further than 18 who toss coins.
+    let answers = out.path().join("answers.csv");
+    let spread = |choice: &dyn Fn(usize, usize) -> bool| {
+        let mut text = "participant,question,left,right,choice\n".to_owned();
+        for (person, question) in (0..18).flat_map(|person| (1..=2).map(move |question| (person, question))) {
+            let object = ["ss", "as"][question - 1];
+            let choice = if choice(person, question) { "left" } else { "right" };
+            text += &format!("p{person},Q{question},{object}_bu,{object}_bi,{choice}\n");
+        }
+        std::fs::write(&answers, text).unwrap();
+        let path = answers.to_str().unwrap();
+        let (_, warned, _) = power(&["--participants", "6", "--spread-of", path]);
+        let line =
+            warned.lines().find(|line| line.starts_with("spread between people: ")).unwrap().to_owned();
+        assert!(line.contains("18 participants") && line.contains(path), "{line}");
+        line.split(' ').nth(3).unwrap().parse::<f64>().unwrap()
+    };
+    assert!(spread(&|person, _| person % 2 == 0) > spread(&|person, q| (person / q).is_multiple_of(2)) + 1.0);
+    for (wrong, place) in [
+        ("--shares=1.5", "above 0 and below 1"),
+        ("--person-sd=-1", "0 to 100"),
+        ("--side-bias=99", "-20 to 20"),
+        ("--studies=3", "100.."),
+    ] {
         let (code, _, said) = run(&["power", wrong]);
         assert!(code == Some(2) && said.contains(place), "{said}");
     }

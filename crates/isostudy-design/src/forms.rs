@@ -138,9 +138,7 @@ impl<'a> Questionnaire<'a> {
         let turn = participant / self.blocks.len();
         let count = self.questions(participant);
         let (row, cycle) = (turn % count, turn / count);
-        // Rows alternate between the two ways round; where their number is even, so do whole cycles.
-        let mirrored = self.section.sides == SideRule::Balanced
-            && (if count.is_multiple_of(2) { turn + cycle } else { turn }) % 2 == 1;
+        let mirrored = self.is_mirrored(participant);
         let seed = self.study.file.study.seed;
         let Block { comparisons, repeats, controls } = &self.blocks[block];
         let mut trials: Vec<Trial> =
@@ -166,6 +164,15 @@ impl<'a> Questionnaire<'a> {
         }
         trials.splice(0..0, self.training());
         Form { participant, block, mirrored, trials }
+    }
+
+    /// Whether a participant, counted from 0, sees every side the other way round than the block's first form shows it.
+    pub fn is_mirrored(&self, participant: usize) -> bool {
+        let turn = participant / self.blocks.len();
+        let count = self.questions(participant);
+        // Rows alternate between the two ways round; where their number is even, so do whole cycles.
+        self.section.sides == SideRule::Balanced
+            && (if count.is_multiple_of(2) { turn + turn / count } else { turn }) % 2 == 1
     }
 
     /// The forms of the planned participants.

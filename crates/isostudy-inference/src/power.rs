@@ -1,18 +1,22 @@
 //! How likely a study is to find a preference that is there, before anyone is asked.
 //!
-//! The study's own forms are answered by simulated people, and each study is tested as [`isostudy_statistics`]
-//! tests a real one: exact sign-flip over participants, two-sided at the study's level, with and without adjustment in its
-//! family. Contrasts and families are those of the analysis. What is found must be what was assumed: a rejection in favour of
-//! the wrong one is none.
+//! The study's own forms are answered by simulated people, and each study is judged as a real one: exact sign-flip over
+//! participants, two-sided, corrected in its family, at the study's level. Contrasts, families and corrections are those of the
+//! analysis. What is found must be what was assumed: a rejection in favour of the wrong one is none. How often the test alone,
+//! without its correction, would reject is counted beside it.
 //!
 //! In every contrast the first property is ahead by the same number of logits. Each person deviates by an own amount for
 //! each arrangement, each clustering and each method that is compared as one, and so does each object, for everybody; two
 //! properties' deviations differ by the given standard deviation. The tests are about the study's own objects: a preference that is there on these alone is
-//! found as well. Answers follow Davidson's model. Controls, repeats and training are left out, as in the tests.
+//! found as well. Answers follow Davidson's model, with a bonus for the left side: who sees which side comes from the forms.
+//! Controls, repeats and training are left out, as in the tests. Nobody is excluded.
 
 mod scores;
+mod spread;
 #[cfg(test)]
 mod tests;
+
+pub use spread::{Spread, spread_between_people};
 
 use isostudy_design::Level;
 use isostudy_design::Study;
@@ -32,6 +36,8 @@ pub struct Assumptions {
     pub participants: Vec<usize>,
     /// Shares of decided answers for the first of two properties, by a person who does not deviate; above 0 and below 1.
     pub shares: Vec<f64>,
+    /// Bonuses of the left side, in logits; 0 for people who do not care for sides.
+    pub side_biases: Vec<f64>,
     /// Standard deviation between people of the difference of two properties, in logits.
     pub person_sd: f64,
     /// Standard deviation between objects of the same.
@@ -61,10 +67,13 @@ pub struct Power {
     pub participants: usize,
     /// Assumed share of decided answers for the first.
     pub share: f64,
-    /// Share of the studies that found it, unadjusted; at a share of 0.5, that found either.
-    pub power: f64,
-    /// The same, adjusted in its family: Holm's adjustment, for single questions Benjamini and Hochberg's.
-    pub adjusted: f64,
+    /// Assumed bonus of the left side, in logits.
+    pub side_bias: f64,
+    /// Share of the studies that found it as they are judged, corrected in its family: by Holm's correction, for single questions by
+    /// Benjamini and Hochberg's. At a share of 0.5, the share that found either.
+    pub corrected: f64,
+    /// Share in which the test alone would have found it.
+    pub uncorrected: f64,
     /// Level of the tests.
     pub level: f64,
     /// Studies simulated.
@@ -72,11 +81,11 @@ pub struct Power {
 }
 
 impl Power {
-    /// Monte-Carlo standard errors of [`Power::power`] and [`Power::adjusted`], with two studies more that found it and two
+    /// Monte-Carlo standard errors of [`Power::corrected`] and [`Power::uncorrected`], with two studies more that found it and two
     /// that did not (Agresti and Coull 1998), so that they are not 0 where all studies ended alike.
     pub fn errors(&self) -> [f64; 2] {
         let studies = self.studies as f64 + 4.0;
-        [self.power, self.adjusted].map(|share| {
+        [self.corrected, self.uncorrected].map(|share| {
             let near = (share * self.studies as f64 + 2.0) / studies;
             (near * (1.0 - near) / studies).sqrt()
         })
@@ -115,6 +124,13 @@ struct Question {
     sign: i64,
 }
 
+/// A question as the first form of its block asks it.
+struct Asked {
+    question: usize,
+    /// 1 if the first of its two levels is on the left, -1 if on the right.
+    first: f64,
+}
+
 struct Setting {
     /// Level of the tests.
     level: f64,
@@ -122,7 +138,9 @@ struct Setting {
     corrections: Vec<Correction>,
     questions: Vec<Question>,
     /// Questions by block. Participants are dealt blocks in turn.
-    blocks: Vec<Vec<usize>>,
+    blocks: Vec<Vec<Asked>>,
+    /// By participant, 1 if sides are as in the first form of the block, -1 if they are exchanged.
+    mirrored: Vec<f64>,
     levels: usize,
     objects: usize,
 }
@@ -136,10 +154,14 @@ struct Setting {
 pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync)) -> Option<Vec<Power>> {
     let numbers = &assumptions.participants;
     assert!(numbers.is_sorted() && numbers.first().is_some_and(|&least| least > 0));
-    let setting = Setting::of(study)?;
+    let setting = Setting::of(study, numbers.last().copied().unwrap_or(0))?;
     let places = numbers.len() * setting.targets.len();
     let mut all = Vec::new();
-    for (place, &share) in assumptions.shares.iter().enumerate() {
+    let shares = assumptions.shares.iter().enumerate();
+    for ((place, &share), &side_bias) in
+        shares.flat_map(|share| assumptions.side_biases.iter().map(move |side| (share, side)))
+    {
+        // The same people for every bonus of a side: what differs between them is the bonus.
         let first = place as u64 * assumptions.studies;
         let add = |mut a: Vec<[u64; 2]>, b: Vec<[u64; 2]>| {
             a.iter_mut().zip(b).for_each(|(a, b)| (0..2).for_each(|i| a[i] += b[i]));
@@ -148,7 +170,11 @@ pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync))
         let rejected = (0..assumptions.studies)
             .into_par_iter()
             .map(|number| {
-                let found = setting.study(share, assumptions, &mut stream(assumptions.seed, first + number));
+                let found = setting.study(
+                    [share, side_bias],
+                    assumptions,
+                    &mut stream(assumptions.seed, first + number),
+                );
                 done();
                 found
             })
@@ -157,7 +183,7 @@ pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync))
         let told =
             setting.targets.iter().zip(rejected.chunks(numbers.len())).filter(|(target, _)| target.told);
         for (target, rejected) in told {
-            for (&participants, &[plain, adjusted]) in numbers.iter().zip(rejected) {
+            for (&participants, &[uncorrected, corrected]) in numbers.iter().zip(rejected) {
                 all.push(Power {
                     family: target.family.clone(),
                     over: target.over.clone(),
@@ -166,8 +192,9 @@ pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync))
                     questions: target.questions,
                     participants,
                     share,
-                    power: share_of(plain),
-                    adjusted: share_of(adjusted),
+                    side_bias,
+                    corrected: share_of(corrected),
+                    uncorrected: share_of(uncorrected),
                     level: setting.level,
                     studies: assumptions.studies,
                 });
@@ -192,13 +219,17 @@ fn over(study: &Study, family: Family) -> String {
 }
 
 impl Setting {
-    fn of(study: &Study) -> Option<Self> {
+    /// For up to so many people.
+    fn of(study: &Study, people: usize) -> Option<Self> {
         let questionnaire = Questionnaire::of(study)?;
-        let block = |block| {
-            let asked = questionnaire.form(block).trials.into_iter();
-            asked.filter(|t| t.role == Role::Comparison).filter_map(|t| t.comparison).collect()
+        // Question, and whether its sides are as listed.
+        let block = |block| -> Vec<(usize, bool)> {
+            let asked = questionnaire.form(block).trials.into_iter().filter(|t| t.role == Role::Comparison);
+            asked.filter_map(|t| t.comparison.map(|q| (q, t.left == study.comparisons[q].left))).collect()
         };
-        let blocks: Vec<Vec<usize>> = (0..questionnaire.blocks()).map(block).collect();
+        let listed: Vec<Vec<(usize, bool)>> = (0..questionnaire.blocks()).map(block).collect();
+        let questions_of = |asked: &Vec<(usize, bool)>| asked.iter().map(|&(question, _)| question).collect();
+        let blocks: Vec<Vec<usize>> = listed.iter().map(questions_of).collect();
         let all = contrasts(study);
         let mut levels: Vec<Level> = Vec::new();
         let mut questions = vec![Question { object: 0, levels: [0; 2], sign: 1 }; study.comparisons.len()];
@@ -251,19 +282,30 @@ impl Setting {
                 told: true,
             }
         }));
+        let asked = |&(question, as_listed): &(usize, bool)| {
+            let sign = questions[question].sign as f64;
+            Asked { question, first: if as_listed { sign } else { -sign } }
+        };
+        let turned = |participant| if questionnaire.is_mirrored(participant) { -1.0 } else { 1.0 };
         Some(Self {
             level: study.file.analysis.level,
             targets,
             corrections,
+            blocks: listed.iter().map(|block| block.iter().map(asked).collect()).collect(),
+            mirrored: (0..people).map(turned).collect(),
             questions,
-            blocks,
             levels: levels.len(),
             objects: study.file.objects.len(),
         })
     }
 
     /// One simulated study: by target and number of participants, whether p and adjusted p reject.
-    fn study(&self, share: f64, assumptions: &Assumptions, random: &mut impl Rng) -> Vec<[u64; 2]> {
+    fn study(
+        &self,
+        [share, side_bias]: [f64; 2],
+        assumptions: &Assumptions,
+        random: &mut impl Rng,
+    ) -> Vec<[u64; 2]> {
         let ahead = (share / (1.0 - share)).ln();
         let numbers = &assumptions.participants;
         let people = numbers.last().copied().unwrap_or(0);
@@ -280,13 +322,14 @@ impl Setting {
         let mut place = 0;
         for participant in 0..people {
             let block = participant % self.blocks.len();
-            for &question in &self.blocks[block] {
+            for &Asked { question, first } in &self.blocks[block] {
                 let Question { object, levels: [a, b], sign } = self.questions[question];
                 let [person, object] = [(&of_people, participant), (&of_objects, object)].map(|(of, i)| {
                     let own = &of[i * self.levels..(i + 1) * self.levels];
                     own[a] - own[b]
                 });
-                let outcome = draw(davidson(ahead + person + object, assumptions.ties), random);
+                let side = side_bias * first * self.mirrored[participant];
+                let outcome = draw(davidson(ahead + person + object + side, assumptions.ties), random);
                 signs[question] = sign * Outcome::sign(outcome);
             }
             for (target, counts) in self.targets.iter().zip(&mut counts) {

@@ -44,7 +44,7 @@ pub use panel::{PANEL_SCHEMA, Panel, StageTime};
 pub use report::{Report, found, found_in_groups, report, report_of_groups};
 pub use self_test::self_test_tables;
 pub use tables::benchmark::of_objects as benchmark_of_objects;
-pub use tables::power::power_tables;
+pub use tables::power::{power_sentences, power_tables};
 pub use tables::tables;
 pub use telling::{Telling, telling};
 pub use without_study::answer_tables;

@@ -2,17 +2,15 @@
 
 mod self_test;
 
-use super::given_answers::{answers_folder, csv};
+use super::given_answers::{answers_folder, served};
 use super::reading_rules::ReadingRules;
-use super::study_forms::forms;
 use crate::outcome::Outcome;
 use crate::store::{self, Store};
 use crate::terminal::say;
 use crate::{answer_files, input, manifest, pipeline};
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use isostudy_design::{Published, Study};
-use isostudy_serve::{deidentify, journal};
+use isostudy_design::Published;
 use pipeline::Said;
 use self_test::SelfTest;
 use std::path::{Path, PathBuf};
@@ -92,19 +90,6 @@ fn analyse(arguments: &Arguments) -> Result<()> {
     store.remove_retired()?;
     manifest::write(&manifest::Origin::of(&study)?, &store)?;
     print(&said, |name| name.starts_with("preference_"), &out)
-}
-
-/// The answers that `isostudy serve` kept, if there are any, as a file beside them.
-fn served(study: &Study, folder: &Path) -> Result<Option<PathBuf>> {
-    if !folder.join("answers.sqlite").is_file() {
-        return Ok(None);
-    }
-    let (file, key, _) = forms(study)?;
-    let given = deidentify::deidentified(&journal::kept(folder, &file.study)?.given);
-    let path = folder.join("answers.csv");
-    store::write_whole(&path, csv(&given, &key)?.as_bytes())?;
-    tell!("answers of `isostudy serve`: {}", path.display());
-    Ok(Some(path))
 }
 
 /// The tables that are short, then what was found, and the file to open.

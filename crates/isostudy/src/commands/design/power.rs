@@ -1,14 +1,19 @@
 //! `isostudy design power`: how likely a study is to find a preference. It is simulated in `isostudy_inference::power`.
 
 use super::forms_section;
+use crate::commands::given_answers::{answers_folder, served};
 use crate::outcome::Outcome;
 use crate::terminal::progress::Step;
-use crate::terminal::say;
-use crate::{input, store};
-use anyhow::{Context, Result, ensure};
+use crate::terminal::{counted, say};
+use crate::{answer_files, input, store};
+use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use isostudy_inference::power::{Assumptions, power as simulated};
+use isostudy_design::Study;
+use isostudy_inference::power::{Assumptions, Spread, power as simulated, spread_between_people};
 use std::path::{Path, PathBuf};
+
+/// The spread between people that is assumed where nothing is known of it, in logits.
+const UNKNOWN: f64 = 1.0;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -20,9 +25,16 @@ pub(crate) struct Arguments {
     /// Shares of decided answers for the first of two properties
     #[arg(long, value_name = "SHARE,SHARE", value_delimiter = ',', value_parser = share, default_values_t = [0.6, 0.69, 0.77])]
     shares: Vec<f64>,
-    /// Standard deviation between people, in logits
-    #[arg(long, value_name = "LOGITS", value_parser = deviation, default_value_t = 1.0)]
-    person_sd: f64,
+    /// Liking for the left side, in logits; 1.5 is strong
+    #[arg(long, value_name = "LOGITS,LOGITS", value_delimiter = ',', value_parser = bias, allow_negative_numbers = true, default_values_t = [0.0])]
+    side_bias: Vec<f64>,
+    /// Spread between people: the standard deviation of their preferences, in logits [default: estimated from the study's answers; 1
+    /// where there are none]
+    #[arg(long, visible_alias = "person-sd", value_name = "LOGITS", value_parser = deviation)]
+    spread: Option<f64>,
+    /// Estimate the spread between people from these answers to the study
+    #[arg(long, value_name = "RESPONSES", conflicts_with = "spread")]
+    spread_of: Option<PathBuf>,
     /// Standard deviation between objects, in logits
     #[arg(long, value_name = "LOGITS", value_parser = deviation, default_value_t = 0.5)]
     object_sd: f64,
@@ -50,6 +62,66 @@ fn deviation(text: &str) -> Result<f64, String> {
     if (0.0..=100.0).contains(&value) { Ok(value) } else { Err("allowed: 0 to 100".into()) }
 }
 
+fn bias(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (-20.0..=20.0).contains(&value) { Ok(value) } else { Err("allowed: -20 to 20".into()) }
+}
+
+/// In the order in which they are given, each once.
+fn distinct(values: &[f64]) -> Vec<f64> {
+    let mut distinct: Vec<f64> = Vec::new();
+    values.iter().for_each(|value| {
+        if !distinct.contains(value) {
+            distinct.push(*value);
+        }
+    });
+    distinct
+}
+
+/// The planned number where it is simulated, else the largest.
+fn participants_told(numbers: &[usize], planned: usize) -> usize {
+    numbers.iter().copied().find(|&n| n == planned).or(numbers.last().copied()).unwrap_or(planned)
+}
+
+/// The spread between people that is assumed, in logits; says on standard error where it comes from.
+fn spread(arguments: &Arguments, study: &Study) -> Result<f64> {
+    if let Some(given) = arguments.spread {
+        return Ok(given);
+    }
+    let mut study = study.clone();
+    if let Some(path) = &arguments.spread_of {
+        study.responses = Some(path.clone());
+    } else if study.responses.is_none() {
+        study.responses = served(&study, &answers_folder(&study, None))?;
+    }
+    let Some(path) = study.responses.clone() else {
+        tell!(
+            "spread between people: {UNKNOWN} logits are assumed, since there are no answers to estimate it from"
+        );
+        return Ok(UNKNOWN);
+    };
+    let path = path.display();
+    let reading = answer_files::of_study(&study)?.expect("responses are named");
+    match spread_between_people(&study, reading.responses) {
+        Ok(Spread { of, people }) => {
+            let (sd, [low, high]) = (of.sd, [of.interval.low, of.interval.high]);
+            tell!(
+                "spread between people: {sd:.2} logits ({low:.2} to {high:.2}), estimated from the answers of {} in {path}; \
+                 --spread {high:.2} plans for the upper end",
+                counted(people, "participant")
+            );
+            Ok(sd)
+        }
+        Err(reason) if arguments.spread_of.is_some() => {
+            bail!("{path}: the spread between people is {reason}")
+        }
+        Err(reason) => {
+            tell!("{path}: the spread between people is {reason}; {UNKNOWN} logits are assumed");
+            Ok(UNKNOWN)
+        }
+    }
+}
+
 /// Prints and writes how likely the study is to find a preference.
 ///
 /// # Errors
@@ -66,14 +138,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     participants.dedup();
     let assumptions = Assumptions {
         participants,
-        shares: arguments.shares.clone(),
-        person_sd: arguments.person_sd,
+        shares: distinct(&arguments.shares),
+        side_biases: distinct(&arguments.side_bias),
+        person_sd: spread(arguments, &study)?,
         object_sd: arguments.object_sd,
         ties: arguments.ties,
         studies: arguments.studies,
         seed: arguments.seed,
     };
-    let studies = assumptions.shares.len() * assumptions.studies as usize;
+    let studies = assumptions.shares.len() * assumptions.side_biases.len() * assumptions.studies as usize;
     let step = Step::begin("studies", studies, studies);
     let found = simulated(&study, &assumptions, &|| step.tick(1)).unwrap_or_default();
     step.count_all(true);
@@ -94,7 +167,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     for (name, bytes) in &files {
         store::write_whole(&out.join(name), bytes)?;
     }
-    say(&tables[1].to_markdown())?;
+    say(&tables[2].to_markdown())?;
+    let told = participants_told(&assumptions.participants, planned);
+    for sentence in isostudy_report::power_sentences(&assumptions, &found, told) {
+        say(&sentence)?;
+    }
     say(&out.display().to_string())?;
     Ok(Outcome::Done)
 }
