@@ -1,5 +1,6 @@
 //! What may be wrong with a study file, and the checks that say so.
 
+use crate::wording::line_of;
 use std::path::{Path, PathBuf};
 
 /// Why a study file is refused. Every variant names the file, and the key where there is one.
@@ -23,10 +24,12 @@ pub enum ConfigError {
         message: String,
     },
     /// A value outside its range, or at odds with another.
-    #[error("{}: {key} = {value}: {limit}", file.display())]
+    #[error("{}: {}{key} = {value}: {limit}", file.display(), on(*line))]
     Value {
         /// The study file.
         file: PathBuf,
+        /// The line on which the key stands, or the table that lacks it; `None` where the file has neither.
+        line: Option<usize>,
         /// The key, as in `objects[1].isovalue`.
         key: String,
         /// What it says.
@@ -35,10 +38,12 @@ pub enum ConfigError {
         limit: String,
     },
     /// A file that the study names is not there.
-    #[error("{}: {key} names {}: no such file", file.display(), path.display())]
+    #[error("{}: {}{key} names {}: no such file", file.display(), on(*line), path.display())]
     MissingFile {
         /// The study file.
         file: PathBuf,
+        /// The line on which the key stands.
+        line: Option<usize>,
         /// The key.
         key: String,
         /// The path, resolved against the study file's folder.
@@ -52,6 +57,20 @@ pub enum ConfigError {
         /// Row and column.
         message: String,
     },
+}
+
+impl ConfigError {
+    /// With the line on which the key stands in the file's text.
+    pub(crate) fn placed(mut self, text: &str) -> Self {
+        if let Self::Value { line, key, .. } | Self::MissingFile { line, key, .. } = &mut self {
+            *line = line_of(text, key);
+        }
+        self
+    }
+}
+
+fn on(line: Option<usize>) -> String {
+    line.map_or_else(String::new, |line| format!("line {line}: "))
 }
 
 /// A number in few letters: `0.04`, `-2`, `1e-300`.
@@ -74,6 +93,7 @@ impl Checker<'_> {
     ) -> Result<T, ConfigError> {
         Err(ConfigError::Value {
             file: self.file.into(),
+            line: None,
             key: key.into(),
             value: value.to_string(),
             limit: limit.into(),
@@ -164,7 +184,7 @@ impl Checker<'_> {
         if path.is_file() {
             Ok(path)
         } else {
-            Err(ConfigError::MissingFile { file: self.file.into(), key: key.into(), path })
+            Err(ConfigError::MissingFile { file: self.file.into(), line: None, key: key.into(), path })
         }
     }
 

@@ -10,6 +10,7 @@ use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, Method};
 use crate::read::{parse_toml, read_table};
 use crate::study::{Comparison, Configuration, Group, Published, Study};
+use crate::wording::did_you_mean;
 use checks::{check_forms, check_objects, check_primary, check_reference, check_sections, check_stills};
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
@@ -33,7 +34,7 @@ impl Study {
     /// # Errors
     /// As for [`Study::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
-        Self::checked(text, path, None)
+        Self::checked(text, path, None).map_err(|error| error.placed(text))
     }
 
     /// As [`Study::parse`], of a study that is in no file: nothing is read, and the CPU is `target`, whatever the text says.
@@ -41,7 +42,7 @@ impl Study {
     /// # Errors
     /// As for [`Study::load`], with `study.toml` as the file; and if the text names files.
     pub fn in_memory(text: &str, target: CpuProfile) -> Result<Self, ConfigError> {
-        Self::checked(text, Path::new("study.toml"), Some(target))
+        Self::checked(text, Path::new("study.toml"), Some(target)).map_err(|error| error.placed(text))
     }
 
     fn checked(text: &str, path: &Path, target: Option<CpuProfile>) -> Result<Self, ConfigError> {
@@ -128,7 +129,8 @@ fn groups(c: &Checker<'_>, file: &StudyFile, methods: &[Method]) -> Result<Vec<G
             return c.refuse(format!("groups[{i}].members"), members.join(", "), "must list at least two");
         }
         if let Some(j) = group.members.iter().position(|member| methods.iter().all(|of| of.id != *member)) {
-            let limit = "is not a method of this study";
+            let known: Vec<&str> = methods.iter().map(|of| of.id.as_str()).collect();
+            let limit = unknown("is not a method of this study", group.members[j].as_str(), &known);
             return c.refuse(format!("groups[{i}].members[{j}]"), group.members[j], limit);
         }
     }
@@ -168,7 +170,13 @@ fn comparisons(
         let pair = format!("{} against {}", section.left.method, section.right.method);
         let group = match (group, second) {
             (Some(group), None) => group,
-            (None, _) => return c.refuse(key("question"), &section.question, format!("no group has {pair}")),
+            (None, _) => {
+                return c.refuse(
+                    key("question"),
+                    &section.question,
+                    format!("no group has {pair}; list both in the members of one of [[groups]]"),
+                );
+            }
             (Some(first), Some(second)) => {
                 let limit = format!(
                     "{pair} is in groups {} and {}; it may be in one",
@@ -203,8 +211,37 @@ fn configuration<'a>(
 ) -> Result<&'a Configuration, ConfigError> {
     match all.iter().find(|configuration| configuration.id == *id) {
         Some(configuration) => Ok(configuration),
-        None => c.refuse(key, id, "is not a configuration of this study"),
+        None => c.refuse(key, id, unknown_configuration(id, all)),
     }
+}
+
+/// Which part of an id the study lacks: the object, the method, or both.
+fn unknown_configuration(id: &ConfigurationId, all: &[Configuration]) -> String {
+    let mut objects: Vec<&str> = all.iter().map(|of| of.id.object.as_str()).collect();
+    let mut methods: Vec<&str> = all.iter().map(|of| of.id.method.as_str()).collect();
+    objects.dedup();
+    methods.sort_unstable();
+    methods.dedup();
+    let ids: Vec<String> = all.iter().map(|of| of.id.to_string()).collect();
+    let meant = did_you_mean(&id.to_string(), ids.iter().map(String::as_str));
+    let lacks =
+        |what: &str, known: &[&str]| format!("no {what} of this study, which has {}", known.join(", "));
+    match (objects.contains(&id.object.as_str()), methods.contains(&id.method.as_str())) {
+        (false, true) => format!("{} is {}{meant}", id.object, lacks("object", &objects)),
+        (true, false) => format!("{} is {}{meant}", id.method, lacks("method", &methods)),
+        _ => format!(
+            "{} is {}; {} is {}{meant}",
+            id.object,
+            lacks("object", &objects),
+            id.method,
+            lacks("method", &methods)
+        ),
+    }
+}
+
+/// What is wrong with a word, the words that there are, and the nearest of them.
+fn unknown(what: &str, word: &str, known: &[&str]) -> String {
+    format!("{what}, which has {}{}", known.join(", "), did_you_mean(word, known.iter().copied()))
 }
 
 #[cfg(test)]

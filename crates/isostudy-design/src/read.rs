@@ -1,6 +1,7 @@
 //! Files into records, with errors that name the file.
 
 use crate::check::ConfigError;
+use crate::wording::plainly;
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
@@ -8,7 +9,7 @@ use std::path::Path;
 pub(crate) fn parse_toml<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigError> {
     toml::from_str(text).map_err(|error| ConfigError::Syntax {
         file: path.into(),
-        message: error.to_string().trim_end().to_owned(),
+        message: plainly(error.to_string().trim_end()),
     })
 }
 

@@ -6,6 +6,7 @@ use crate::config::{FieldSection, ObjectSection, StudyFile, SweepSection};
 use crate::contrast::contrasts;
 use crate::method::is_summed;
 use crate::study::{Configuration, Study};
+use crate::wording::did_you_mean;
 use crate::{Arrangement, MethodId};
 use std::collections::BTreeSet;
 
@@ -102,7 +103,8 @@ fn check_sweep(c: &Checker<'_>, file: &StudyFile, sweep: &SweepSection) -> Resul
     }
     for (i, object) in sweep.objects.iter().enumerate() {
         if !known.contains(&object.as_str()) {
-            let limit = format!("must be an object of this study: {}", known.join(", "));
+            let meant = did_you_mean(object, known.iter().copied());
+            let limit = format!("must be an object of this study: {}{meant}", known.join(", "));
             return c.refuse(format!("benchmark.sweep.objects[{i}]"), object, limit);
         }
     }
@@ -284,7 +286,12 @@ pub(super) fn check_primary(c: &Checker<'_>, study: &Study) -> Result<(), Config
     match primary.iter().position(|name| !known.contains(name)) {
         None => Ok(()),
         Some(i) => {
-            let limit = format!("is not a contrast of this study, which has: {}", known.join(", "));
+            let meant = did_you_mean(&primary[i], known.iter().map(String::as_str));
+            let all = known.join(", ");
+            let limit = match &*meant {
+                "" => format!("is not a contrast of this study, which has: {all}"),
+                meant => format!("is not a contrast of this study{meant} It has: {all}"),
+            };
             c.refuse(format!("analysis.primary[{i}]"), &primary[i], limit)
         }
     }
@@ -300,6 +307,7 @@ pub(super) fn check_reference(c: &Checker<'_>, study: &Study) -> Result<(), Conf
         return Ok(());
     }
     let known: Vec<&str> = compared.iter().map(MethodId::as_str).collect();
-    let limit = format!("is not a method that this study compares, which are: {}", known.join(", "));
+    let meant = did_you_mean(reference, known.iter().copied());
+    let limit = format!("is not a method that this study compares, which are: {}{meant}", known.join(", "));
     c.refuse("analysis.reference", reference, limit)
 }

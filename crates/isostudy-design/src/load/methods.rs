@@ -4,6 +4,7 @@ use crate::check::{Checker, ConfigError};
 use crate::config::{FactorSection, LevelSection, MethodSection, StudyFile};
 use crate::method::{FactorSpec, LevelSpec, Method, expand};
 use crate::study::METHOD;
+use crate::wording::did_you_mean;
 
 /// What `[[methods]]` or the short form says, checked: the factors, of which the last is [`METHOD`], and the methods.
 pub(super) fn methods(
@@ -82,7 +83,10 @@ fn listed(c: &Checker<'_>, file: &StudyFile) -> Result<(Vec<FactorSpec>, Vec<Met
             let known: Vec<&str> = factors.iter().map(|of| of.name.as_str()).collect();
             let limit = match known[..] {
                 [] => "no [[factors]] are declared".to_owned(),
-                _ => format!("must name declared factors: {}", known.join(", ")),
+                _ => {
+                    let meant = did_you_mean(name, known.iter().copied());
+                    format!("must name declared factors: {}{meant}", known.join(", "))
+                }
             };
             return c.refuse(format!("methods[{i}].levels"), name, limit);
         }
@@ -94,7 +98,8 @@ fn listed(c: &Checker<'_>, file: &StudyFile) -> Result<(Vec<FactorSpec>, Vec<Met
             };
             let names: Vec<&str> = factor.levels.iter().map(LevelSection::name).collect();
             let Some(place) = names.iter().position(|name| name == named) else {
-                let limit = format!("must be a level of this factor: {}", names.join(", "));
+                let meant = did_you_mean(named, names.iter().copied());
+                let limit = format!("must be a level of this factor: {}{meant}", names.join(", "));
                 return c.refuse(format!("methods[{i}].levels.{}", spec.name), named, limit);
             };
             levels.push(Some(place));
@@ -125,7 +130,12 @@ fn check_budget(
         Some(other) if other.id == section.id => "must name another method of this study",
         Some(other) if other.budget.is_some() => "must name a method that has no match of its own",
         Some(_) => return Ok(()),
-        None => "must name a method of this study",
+        None => {
+            let known: Vec<&str> = file.methods.iter().map(|other| other.id.as_str()).collect();
+            let meant = did_you_mean(budget.of.as_str(), known.iter().copied());
+            let limit = format!("must name a method of this study: {}{meant}", known.join(", "));
+            return c.refuse(key(), budget.of, limit);
+        }
     };
     c.refuse(key(), budget.of, limit)
 }

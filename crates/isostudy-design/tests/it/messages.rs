@@ -9,7 +9,7 @@ use std::mem::discriminant;
 use std::path::Path;
 
 /// Passages of the paper's study file and what each is made, one a refusal.
-const REFUSED: [(&str, &str); 24] = [
+const REFUSED: [(&str, &str); 36] = [
     ("isovalue = 0.0", "isovalue = nan"),
     ("isovalue = 0.0", "isovalue = -1e300"),
     ("benchmark_spacing = 0.04", "benchmark_spacing = -0.04"),
@@ -34,6 +34,18 @@ const REFUSED: [(&str, &str); 24] = [
     ("[analysis]", "[analysis]\nfirst_answer = 2026-02-30"),
     ("[analysis]", "[analysis]\nreference = \"xx\""),
     ("schema = 1", "schema = 0"),
+    ("left = \"ss_bu\", right = \"ss_bi\"", "left = \"ss_bu\", right = \"ss_ib\""),
+    ("left = \"ss_bu\", right = \"ss_bi\"", "left = \"ss_bu\", right = \"sphere_bi\""),
+    ("left = \"ss_bu\", right = \"ss_bi\"", "left = \"ss_bu\", right = \"torus_mc\""),
+    ("left = \"ss_bu\", right = \"ss_bi\"", "left = \"ss_bu\", rigth = \"ss_bi\""),
+    ("left = \"ss_bu\", right = \"ss_bi\"", "left = \"ss_bu\""),
+    ("members = [\"si\", \"bi\"]", "members = [\"si\", \"by\"]"),
+    ("primary = []", "primary = [\"B-S wihtin U\"]"),
+    ("families = \"by-kind\"", "families = \"by_kind\""),
+    ("field = { kind = \"sphere\"", "field = { kind = \"spere\""),
+    ("arrangements = [\"body-centred\"", "arrangements = [\"body-centered\""),
+    ("memory_gib = 8.0", "memory_gib = \"8 GiB\""),
+    ("[limits]", "[[limits]]"),
 ];
 
 fn runs() -> Vec<InvalidRun> {
