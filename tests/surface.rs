@@ -539,3 +539,30 @@ fn what_cannot_be_said_ends_nothing() {
     assert!(ended.success(), "{ended}");
     assert!(folder.path("a.ply").is_file());
 }
+
+/// On standard error, so that standard output stays the file's name; the report of --json has it.
+#[test]
+fn a_surface_says_how_large_it_is_and_how_long_it_took() {
+    let folder = Folder::of("extract");
+    let ball =
+        ["--field", "sqrt(x^2+y^2+z^2) - 1", "--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--spacing", "0.05"];
+    let run = folder.succeed(&[&ball[..], &["--out", "ball.ply", "--method", "mc"]].concat());
+    assert_eq!(run.stdout, "ball.ply\n");
+    let line = run.stderr.lines().find(|line| line.starts_with("ball.ply: ")).unwrap_or(&run.stderr);
+    let words: Vec<&str> = line.split(' ').collect();
+    let [_, triangles, "triangles,", vertices, "vertices,", "extracted", "in", time, "ms" | "s"] = words[..]
+    else {
+        panic!("{line}")
+    };
+    let number = |text: &str| text.replace(',', "").parse::<u64>().unwrap();
+    let header =
+        String::from_utf8_lossy(&std::fs::read(folder.path("ball.ply")).unwrap()[..400]).into_owned();
+    assert!(header.contains(&format!("element vertex {}\n", number(vertices))), "{header}");
+    assert!(header.contains(&format!("element face {}\n", number(triangles))), "{header}");
+    assert!(
+        triangles.contains(',') && number(triangles) > 1000 && time.parse::<f64>().unwrap() > 0.0,
+        "{line}"
+    );
+    let run = folder.succeed(&[&ball[..], &["--out", "ball.ply", "--json"]].concat());
+    assert_eq!(run.stderr, "");
+}

@@ -40,6 +40,16 @@ pub(crate) fn counted(number: u64, word: &str) -> String {
     format!("{number} {word}{}", if number == 1 { "" } else { "s" })
 }
 
+/// `1,234,567`.
+pub(crate) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let first = digits.len() % 3;
+    let rest = digits[first..].as_bytes().chunks(3).map(|group| String::from_utf8_lossy(group).into_owned());
+    let groups: Vec<String> =
+        Some(digits[..first].to_owned()).filter(|of| !of.is_empty()).into_iter().chain(rest).collect();
+    groups.join(",")
+}
+
 /// A number with seven significant digits.
 pub(crate) fn significant(value: f64) -> String {
     let size = value.abs();
@@ -48,4 +58,16 @@ pub(crate) fn significant(value: f64) -> String {
     }
     let decimals = if value == 0.0 { 0 } else { (6.0 - size.log10().floor()) as usize };
     format!("{value:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_grouped_by_three() {
+        let numbers = [0, 7, 999, 1000, 12_345, 1_234_567, 100_000];
+        let want = ["0", "7", "999", "1,000", "12,345", "1,234,567", "100,000"];
+        assert_eq!(numbers.map(grouped), want);
+    }
 }

@@ -13,7 +13,7 @@ use crate::outcome::Outcome;
 use crate::place::place;
 use crate::source::Source;
 use crate::store::{write_whole, write_whole_by};
-use crate::terminal::{counted, say};
+use crate::terminal::{counted, grouped, say};
 use crate::{input, mesh_file, prepare, records};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
@@ -26,6 +26,7 @@ use isovalues::Isovalues;
 use quality_report::{Cells, QualityReport};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh", "labels"]).required(true)))]
@@ -166,6 +167,10 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if let Some(path) = &arguments.picture {
         write_whole(path, &picture(&extraction.mesh)?)?;
     }
+    // The report has it.
+    if !arguments.json {
+        tell_made(out, extraction.counts.triangles, extraction.counts.vertices, extraction.times.total());
+    }
     if arguments.quality || arguments.json {
         let accuracy =
             isostudy_extract::accuracy(&extraction.mesh, &*source.field, source.isovalue, &grid, &execution)?;
@@ -183,6 +188,17 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
         return Ok(Outcome::CheckFailed);
     }
     Ok(Outcome::Done)
+}
+
+/// Says on standard error how large a mesh is, and how long it took to make from what was read.
+fn tell_made(out: &Path, triangles: u64, vertices: u64, time: Duration) {
+    let [triangles, vertices] = [(triangles, "triangle"), (vertices, "vertex")].map(|(number, word)| {
+        let many = if word == "vertex" { "vertices" } else { "triangles" };
+        format!("{} {}", grouped(number), if number == 1 { word } else { many })
+    });
+    let ms = 1e3 * time.as_secs_f64();
+    let time = if ms < 1000.0 { format!("{ms:.1} ms") } else { format!("{:.2} s", 1e-3 * ms) };
+    tell!("{}: {triangles}, {vertices}, extracted in {time}", out.display());
 }
 
 /// The surface of a field on a grid of cubes.

@@ -1,6 +1,6 @@
 //! The boundaries between labels, of `--labels`.
 
-use super::{Arguments, check_outputs};
+use super::{Arguments, check_outputs, tell_made};
 use crate::mesh_file;
 use crate::outcome::Outcome;
 use crate::store::{write_whole, write_whole_by};
@@ -14,6 +14,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{BufWriter, Write};
 use std::path::Path;
+use std::time::Instant;
 
 /// The version of the JSON.
 const SCHEMA: u32 = 1;
@@ -39,7 +40,9 @@ pub(super) fn extract(arguments: &Arguments, path: &Path) -> Result<Outcome> {
     drop(values);
     let volume = LabelVolume { counts, labels: &labels, origin, steps };
     let execution = Execution { threads: arguments.threads as usize };
+    let began = Instant::now();
     let surface = volume.extract(&settings, &execution).with_context(name)?;
+    let time = began.elapsed();
     write_whole_by(out, |file| {
         let mut buffered = BufWriter::new(file);
         format.write_labelled(&surface.labelled, &mut buffered)?;
@@ -47,6 +50,10 @@ pub(super) fn extract(arguments: &Arguments, path: &Path) -> Result<Outcome> {
     })?;
     if let Some(path) = &arguments.picture {
         write_whole(path, &picture(&surface.labelled)?)?;
+    }
+    let mesh = &surface.labelled.mesh;
+    if !arguments.json {
+        tell_made(out, mesh.triangles.len() as u64, mesh.positions.len() as u64, time);
     }
     if arguments.quality || arguments.json {
         let report = Report::new(name(), smoothing, counts, &surface);
