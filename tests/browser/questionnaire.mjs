@@ -541,7 +541,10 @@ test('on a phone the surfaces stand one over the other, as large as it allows, a
   assert.deepEqual(await page.locator('.name').allTextContents(), ['Top', 'Bottom']);
   await page.locator('.half').first().tap();
   const large = await surfaces(page);
-  assert.ok(large.every((half) => half.width === 390), `${large[0].width} px`);
+  // The answers stay where they can be given.
+  assert.ok(large.every((half) => half.width > top.width + 40 && half.width <= 390), `${large[0].width} px after ${top.width}`);
+  const below = await page.locator('.choices').boundingBox();
+  assert.ok(large[1].y + large[1].height <= below.y && below.y + below.height <= 844, `answers at ${below.y}`);
   if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'phone-large.png') });
   await page.getByRole('button', { name: 'Smaller' }).tap();
   assert.deepEqual(await surfaces(page), [top, bottom]);
@@ -566,6 +569,44 @@ test('on a phone the surfaces stand one over the other, as large as it allows, a
   const screen = ({ viewport_width, viewport_height, pixel_ratio, layout, input, shown_as }) => [viewport_width, viewport_height, pixel_ratio, layout, input, shown_as];
   assert.deepEqual(lines.map(screen), [['390', '844', '3', 'stacked', 'touch', 'gif'], ['844', '390', '3', 'beside', 'touch', 'gif']]);
   assert.equal(lines[0].surface_px, String(top.width));
+  await server.stop();
+});
+
+test('in a wide window a pair is up to twice as large as it was made, smoothly, and enlarged it leaves the answers', async () => {
+  const plain = path.join(folder, 'plain.toml');
+  const text = fs.readFileSync(config, 'utf8').replace('page_scale = 4', 'page_scale = 1').replace('width = 128', 'width = 320').replace('height = 128', 'height = 320');
+  fs.writeFileSync(plain, text);
+  const made = path.join(folder, 'plain');
+  run('bundle', plain, '--out', made);
+  const server = await serve('wide', '0', [plain, made]);
+  const page = await open(server.address, { viewport: { width: 1280, height: 900 } });
+  await begin(page);
+  await ready(page);
+  const usual = await surfaces(page);
+  assert.ok(usual.every((half) => half.width >= 560 && half.width <= 640), `${usual[0].width} px of at most 640`);
+  assert.equal(await page.locator('.half img').first().evaluate((img) => getComputedStyle(img).imageRendering), 'auto');
+  const choices = page.locator('.choices');
+  const inside = async () => {
+    const [left] = await surfaces(page);
+    const box = await choices.boundingBox();
+    assert.ok(left.y >= 0 && left.y + left.height <= box.y && box.y + box.height <= 900, `${left.y + left.height}, ${box.y}`);
+  };
+  await inside();
+  if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'wide.png') });
+  // As large as they were made for and no larger, however large the window.
+  await page.setViewportSize({ width: 2560, height: 1600 });
+  await page.waitForFunction(() => document.querySelector('.half').clientWidth === 640);
+  await page.setViewportSize({ width: 1280, height: 900 });
+  await page.waitForFunction((width) => document.querySelector('.half').clientWidth === width, usual[0].width);
+  await page.getByRole('button', { name: 'Enlarge' }).click();
+  const large = await surfaces(page);
+  assert.ok(large[0].width > usual[0].width, `${large[0].width} px after ${usual[0].width}`);
+  await inside();
+  if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'wide-large.png') });
+  await page.locator('[data-choice="R"]').click();
+  await page.getByRole('heading', { name: 'Question 1' }).waitFor();
+  await ready(page);
+  assert.deepEqual(await surfaces(page), usual, 'the next pair begins as usual');
   await server.stop();
 });
 

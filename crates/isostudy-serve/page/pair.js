@@ -64,12 +64,15 @@ window.isostudyPair = async (study, file, box, make, changed) => {
   let largest = 0;
   let needed = 0;
 
-  /** Lays both halves out, whichever way makes them larger; no larger than they are made for unless the whole window is theirs. */
+  // Up to twice as large as they were made, smoothly; who says page_scale wants square pixels of that size, and no others.
+  const MOST = study.page_scale > 1 ? 1 : 2;
+
+  /** Lays both halves out, whichever way makes them larger; larger than MOST only if the window is theirs but for the answers. */
   function layout() {
     const whole = box.classList.contains('large');
     box.style.maxHeight = '';
     const [width, height] = [box.clientWidth, box.clientHeight];
-    const most = whole ? Infinity : 1;
+    const most = whole ? Infinity : MOST;
     const beside = Math.min(width / 2 / WIDTH, height / HEIGHT, most);
     const over = Math.min(width / WIDTH, (height - 4) / 2 / HEIGHT, most);
     stacked = over > beside;

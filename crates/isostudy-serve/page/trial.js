@@ -141,6 +141,7 @@ window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => 
     function enlarge(large) {
       if (shown === null || small || pair.classList.contains('large') === large) return;
       pair.classList.toggle('large', large);
+      document.body.classList.toggle('larger', large);
       larger.setAttribute('aria-pressed', String(large));
       shown.layout();
       if (!large) larger.focus({ preventScroll: true });
