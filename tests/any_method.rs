@@ -317,7 +317,7 @@ fn answered(folder: &Study) {
 #[test]
 fn bad_input_is_refused_before_any_work() {
     for (from, to, told) in [
-        ("id = \"fp\"", "id = \"bi\"", vec!["study.toml: methods[2].id = bi"]),
+        ("id = \"fp\"", "id = \"bi\"", vec!["study.toml: line ", ": methods[2].id = bi"]),
         (
             "levels = { placement = \"mean\" }",
             "levels = { colour = \"red\" }",
@@ -331,68 +331,77 @@ fn bad_input_is_refused_before_any_work() {
         (
             "recipe = { kind = \"tetrahedra\", arrangement = \"body-centred\", clustering = \"integrated\" }",
             "recipe = { kind = \"tetrahedra\", arrangement = \"body-centred\", command = [\"x\"] }",
-            vec!["study.toml: methods[0].recipe", "command", "clustering"],
+            vec!["study.toml: line ", ": methods[0].recipe", "command", "clustering"],
         ),
         (
             "recipe = { kind = \"tetrahedra\", arrangement = \"body-centred\", clustering = \"integrated\" }",
             "recipe = { kind = \"cones\" }",
             vec![
-                "study.toml: methods[0].recipe",
+                "study.toml: line ",
+                ": methods[0].recipe",
                 "cones",
                 "tetrahedra",
-                "`dual-contouring`, `continuation`, `program`, `meshes`",
+                "\"dual-contouring\", \"continuation\", \"program\", \"meshes\"",
             ],
         ),
         (
             "arrangement = \"face-centred\", clustering = \"edge-collapse\"",
             "arrangement = \"face-centred\", clustering = \"integrated\"",
-            vec!["study.toml: methods[2].recipe", "integrated clustering does not go with face-centred"],
+            vec![
+                "study.toml: line ",
+                ": methods[2].recipe",
+                "integrated clustering does not go with face-centred",
+            ],
         ),
         (
             "recipe = { kind = \"tetrahedra\", arrangement = \"face-centred\"",
             "recipe = { kind = \"tetrahedra\", arrangement = \"diamond\"",
-            vec!["study.toml: methods[2].recipe", "diamond", "face-centred`\n"],
+            vec!["study.toml: line ", ": methods[2].recipe", "diamond", "face-centred`\n"],
         ),
-        ("- 0.25\" }", "+ 25\" }", vec!["study.toml: objects[0].field", "no surface"]),
-        ("z^2) - 0.25", "z^2 - 0.25", vec!["study.toml: objects[0].field", "text"]),
-        ("scan.nrrd", "skan.nrrd", vec!["study.toml: objects[2].field", "skan.nrrd", "no such file"]),
+        ("- 0.25\" }", "+ 25\" }", vec!["study.toml: line ", ": objects[0].field", "no surface"]),
+        ("z^2) - 0.25", "z^2 - 0.25", vec!["study.toml: line ", ": objects[0].field", "text"]),
+        (
+            "scan.nrrd",
+            "skan.nrrd",
+            vec!["study.toml: line ", ": objects[2].field", "skan.nrrd", "no such file"],
+        ),
         (
             "character = \"caves\"",
             "character = \"moon\"",
-            vec!["study.toml: objects[1].field", "moon", "hills"],
+            vec!["study.toml: line ", ": objects[1].field", "moon", "hills"],
         ),
-        ("caves = 0.15", "caves = 15", vec!["study.toml: objects[1].field", "caves", "0 to 0.5"]),
-        ("./example.py", "./nobody.py", vec!["study.toml: methods[3].recipe", "nobody.py"]),
+        ("caves = 0.15", "caves = 15", vec!["study.toml: line ", ": objects[1].field", "caves", "0 to 0.5"]),
+        ("./example.py", "./nobody.py", vec!["study.toml: line ", ": methods[3].recipe", "nobody.py"]),
         (
             "\"python3\"",
             "\"no-such-program-anywhere\"",
-            vec!["study.toml: methods[3].recipe", "no-such-program-anywhere"],
+            vec!["study.toml: line ", ": methods[3].recipe", "no-such-program-anywhere"],
         ),
-        ("fo = \"by-hand/fo.ply\", ", "", vec!["study.toml: methods[4].recipe", "files.fo"]),
+        ("fo = \"by-hand/fo.ply\", ", "", vec!["study.toml: line ", ": methods[4].recipe", "files.fo"]),
         (
             "by-hand/te.obj",
             "by-hand/nothing.obj",
-            vec!["study.toml: methods[4].recipe", "files.te", "no such file"],
+            vec!["study.toml: line ", ": methods[4].recipe", "files.te", "no such file"],
         ),
         (
             "triangles_of = \"bi\"",
             "triangles_of = \"fp\"",
-            vec!["study.toml: methods[2].match.triangles_of = fp", "another method"],
+            vec!["study.toml: line ", ": methods[2].match.triangles_of = fp", "another method"],
         ),
         (
             "triangles_of = \"bi\"",
             "triangles_of = \"mc\"",
-            vec!["study.toml: methods[2].match.triangles_of = mc"],
+            vec!["study.toml: line ", ": methods[2].match.triangles_of = mc"],
         ),
         (
             "triangles_of = \"bi\"",
             "samples_of = \"artist\"",
-            vec!["study.toml: methods[2].match.samples_of = artist", "have no samples to match"],
+            vec!["study.toml: line ", ": methods[2].match.samples_of = artist", "have no samples to match"],
         ),
         (
             "triangles_of = \"bi\"",
             "time_of = \"artist\"",
-            vec!["study.toml: methods[2].match.time_of = artist", "have no time to match"],
+            vec!["study.toml: line ", ": methods[2].match.time_of = artist", "have no time to match"],
         ),
         (
             "triangles_of = \"bi\"",
@@ -407,7 +416,7 @@ fn bad_input_is_refused_before_any_work() {
         (
             "triangles_of = \"bi\"",
             "triangles_of = \"bi\", within = 2",
-            vec!["study.toml: methods[2].match.within = 2", "0.5"],
+            vec!["study.toml: line ", ": methods[2].match.within = 2", "0.5"],
         ),
     ] {
         let folder = Study::new();

@@ -86,7 +86,10 @@ fn a_study_with_a_seed_outside_of_a_box_is_refused_before_any_work() {
     for arguments in [&["validate", "a/study.toml"][..], &["extract", "a/study.toml", "-o", "out"]] {
         let Run { code, stderr, .. } = folder.run(arguments);
         assert_eq!(code, Some(2), "{stderr}");
-        has(&stderr, &["study.toml: methods[0].recipe.seeds[1] = [0.75, 0.0, 0.0]", "box of object torus"]);
+        has(
+            &stderr,
+            &["study.toml: line ", ": methods[0].recipe.seeds[1] = [0.75, 0.0, 0.0]", "box of object torus"],
+        );
         assert!(!folder.path("out").exists(), "something was written");
     }
     with("[[0, 0, 0.4], [0.5, 0, 0]]");

@@ -104,7 +104,7 @@ fn what_is_no_recipe_is_refused_with_its_place_and_what_is_allowed() {
         ("7".into(), &["must be a table"]),
         ("{ arrangement = \"body-centred\" }".into(), &["kind is missing", "\"tetrahedra\""]),
         ("{ kind = \"tetrahedra\" }".into(), &["missing field `arrangement`"]),
-        ("{ kind = \"cones\" }".into(), &["`cones`", "`tetrahedra`", "`cubes`"]),
+        ("{ kind = \"cones\" }".into(), &["\"cones\"", "\"tetrahedra\"", "\"cubes\""]),
         ("{ kind = \"program\", command = [\"a\"] }".into(), &["kind = \"program\"", "of a study"]),
         ("{ kind = \"meshes\", files = {} }".into(), &["kind = \"meshes\"", "of a study"]),
     ] {

@@ -329,11 +329,16 @@ fn a_download_brings_no_formula() {
     let over = Run::of(isostudy().arg("collect").arg(fixture.config()).args(onto_itself));
     assert_eq!(over.code, Some(2));
     assert!(over.stderr.contains("download.csv: is a download; it would be written over"), "{}", over.stderr);
-    for nothing in ["", "hello\n", "[1,2]\n"] {
+    for (nothing, what) in [
+        ("", "the file is empty"),
+        ("hello\n", "the file has hello"),
+        ("[1,2]\n", "the file has [1, 2]"),
+        ("participant,form,order,stimulus,choice,rt_ms\n", "empty.csv: no answers in it"),
+    ] {
         let empty = fixture.folder().join("empty.csv");
         std::fs::write(&empty, nothing).unwrap();
         let Run { code, stderr: said, .. } = collect(&empty);
-        assert!(code == Some(2) && said.contains("empty.csv: no answers in it"), "{said}");
+        assert!(code == Some(2) && said.contains("empty.csv: ") && said.contains(what), "{said}");
     }
     let Run { code, stderr: said, .. } = collect(Path::new("/dev/null"));
     assert!(code == Some(2) && said == "isostudy: /dev/null: not a file\n", "{said}");

@@ -68,9 +68,33 @@ struct File {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DownloadError {
-    /// Not CSV with the page's columns.
+    /// Not CSV.
     #[error("{0}")]
     Csv(#[from] csv::Error),
+    /// Not CSV with the page's columns.
+    #[error(
+        "line 1: is no download of the questionnaire's page, which has the columns {}: {}",
+        NEEDED.join(", "),
+        lacking(missing, found)
+    )]
+    Columns {
+        /// Columns that are needed and not there.
+        missing: Vec<&'static str>,
+        /// Columns that are there.
+        found: Vec<String>,
+    },
+    /// A cell that the page would not write.
+    #[error("line {line}: {column} = {value}: allowed: {allowed}")]
+    Cell {
+        /// The line of the file, from 1.
+        line: u64,
+        /// The column's name.
+        column: String,
+        /// What it says.
+        value: String,
+        /// What it may say.
+        allowed: &'static str,
+    },
     /// Not the page's JSON.
     #[error("{0}")]
     Json(#[from] serde_json::Error),
@@ -99,11 +123,64 @@ pub fn read(text: &str, study: &str) -> Result<Vec<Given>, DownloadError> {
         }
         file.answers
     } else {
-        csv::Reader::from_reader(text.trim_start_matches('\u{feff}').as_bytes())
-            .deserialize()
-            .collect::<Result<_, _>>()?
+        rows(text.trim_start_matches('\u{feff}'))?
     };
     rows.into_iter().map(given).collect()
+}
+
+/// The columns that every download has had.
+const NEEDED: [&str; 6] = ["participant", "form", "order", "stimulus", "choice", "rt_ms"];
+
+/// The rows of a CSV.
+fn rows(text: &str) -> Result<Vec<Row>, DownloadError> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers()?.clone();
+    let missing: Vec<&str> = NEEDED.into_iter().filter(|name| header.iter().all(|of| of != *name)).collect();
+    if !missing.is_empty() {
+        return Err(DownloadError::Columns { missing, found: header.iter().map(str::to_owned).collect() });
+    }
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record?;
+        rows.push(
+            record.deserialize(Some(&header)).map_err(|error| wrong_cell(text, &header, &record, error))?,
+        );
+    }
+    Ok(rows)
+}
+
+/// What a file with these columns has in their place.
+fn lacking(missing: &[&str], found: &[String]) -> String {
+    let found = match found {
+        [] => "the file is empty".to_owned(),
+        _ => format!("the file has {}", found.join(", ")),
+    };
+    if missing.len() == NEEDED.len() { found } else { format!("{} is missing; {found}", missing.join(", ")) }
+}
+
+/// Which cell of a row is to blame.
+fn wrong_cell(
+    text: &str,
+    header: &csv::StringRecord,
+    record: &csv::StringRecord,
+    error: csv::Error,
+) -> DownloadError {
+    // The reader counts a line when it has read the \n of \r\n, which it does with the record behind it.
+    let begin = record.position().map_or(0, |position| position.byte() as usize).min(text.len());
+    let (before, rest) = text.as_bytes().split_at(begin);
+    let ends =
+        before.iter().filter(|&&byte| byte == b'\n').count() + usize::from(rest.first() == Some(&b'\n'));
+    let line = 1 + ends as u64;
+    let cells = header.iter().zip(record);
+    let wrong = cells.filter_map(|(column, value)| {
+        let allowed = match column {
+            "form" | "order" | "rt_ms" if value.parse::<u32>().is_err() => "a whole number",
+            "choice" if !["L", "NP", "R"].contains(&value) => "L, NP, R",
+            _ => return None,
+        };
+        Some(DownloadError::Cell { line, column: column.into(), value: value.into(), allowed })
+    });
+    wrong.into_iter().next().unwrap_or(DownloadError::Csv(error))
 }
 
 fn given(row: Row) -> Result<Given, DownloadError> {
@@ -193,11 +270,27 @@ mod tests {
     fn what_is_not_a_download_says_where() {
         let wrong = |text: &str| read(text, "s").unwrap_err().to_string();
         assert!(
-            wrong(&CSV.replace("NP", "maybe")).contains("record 1"),
+            wrong(&CSV.replace("NP", "maybe")) == "line 2: choice = maybe: allowed: L, NP, R",
             "{}",
             wrong(&CSV.replace("NP", "maybe"))
         );
-        assert!(wrong("a,b\n1,2\n").contains("missing field"));
+        let order = wrong(&format!("{CSV}ab,2,x,tani,NP,812,z\r\n"));
+        assert_eq!(order, "line 3: order = x: allowed: a whole number");
+        let other_column = CSV.replace("stimulus,", "pair,");
+        for (other, said) in [
+            ("a,b\n1,2\n", "the file has a, b"),
+            (
+                other_column.as_str(),
+                "stimulus is missing; the file has participant, form, order, pair, choice, rt_ms, answered",
+            ),
+            ("", "the file is empty"),
+        ] {
+            let needed = "participant, form, order, stimulus, choice, rt_ms";
+            let start = format!(
+                "line 1: is no download of the questionnaire's page, which has the columns {needed}: "
+            );
+            assert_eq!(wrong(other), start + said);
+        }
         assert_eq!(wrong(r#"{"study":"t","answers":[]}"#), "holds answers to study t");
     }
 }

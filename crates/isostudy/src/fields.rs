@@ -4,11 +4,13 @@ use crate::memory::Limit;
 use crate::mesh_file;
 use crate::source::{self, Options};
 use crate::store::sha256;
+use crate::study_key::place;
 use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
 use glam::{DVec3, Vec3};
 use isostudy_design::Study;
 use isostudy_design::config::{FieldSection, MeshSourceSection, ObjectSection};
+use isostudy_design::wording::{did_you_mean, plainly};
 use isostudy_field::{Asteroid, MeshDistance, Sphere, StudyField, Terrain, TerrainCharacter};
 use isostudy_mesh::{Bounds, TriangleMesh};
 use serde::Deserialize;
@@ -55,7 +57,7 @@ impl<'a> Fields<'a> {
         if self.made[object].get().is_none() {
             let section = &self.study.file.objects[object];
             let field = make(self.study, object, section)
-                .with_context(|| format!("{}: objects[{object}].field", self.study.path.display()))?;
+                .with_context(|| place(self.study, &format!("objects[{object}].field")))?;
             let _ = self.made[object].set(field);
         }
         Ok(self.made[object].get().expect("made above"))
@@ -93,10 +95,7 @@ fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<ObjectFi
         FieldSection::Volume { file, inside, close } => {
             Ok(of(options(study, object, *inside, *close).of_volume(&study.resolve(file))?))
         }
-        FieldSection::Terrain(keys) => {
-            let keys: TerrainKeys = toml::Value::Table(keys.clone()).try_into()?;
-            as_it_is(Box::new(keys.terrain(bounds(object))?))
-        }
+        FieldSection::Terrain(keys) => as_it_is(Box::new(TerrainKeys::of(keys)?.terrain(bounds(object))?)),
     }
 }
 
@@ -160,6 +159,26 @@ fn one() -> u32 {
 }
 
 impl TerrainKeys {
+    /// The keys of a study file.
+    ///
+    /// # Errors
+    /// The first that is none, or that is missing, with what is allowed.
+    fn of(keys: &toml::Table) -> Result<Self> {
+        let known = TerrainCharacter::ALL.map(|character| character.to_string());
+        let allowed = known.each_ref().map(|name| format!("\"{name}\"")).join(", ");
+        match keys.get("character") {
+            None => bail!("character is missing; allowed: {allowed}"),
+            Some(toml::Value::String(name)) if known.contains(name) => {}
+            Some(other) => {
+                let meant =
+                    did_you_mean(other.as_str().unwrap_or_default(), known.iter().map(String::as_str));
+                bail!("character = {other}: allowed: {allowed}{meant}")
+            }
+        }
+        let keys = toml::Value::Table(keys.clone()).try_into();
+        keys.map_err(|error: toml::de::Error| anyhow::Error::msg(plainly(error.to_string().trim_end())))
+    }
+
     fn terrain(&self, bounds: Bounds) -> Result<Terrain> {
         let character: TerrainCharacter = self.character.parse()?;
         let mut settings = character.settings(self.seed);
@@ -205,11 +224,8 @@ fn present_source(
             true => "; `make bunny` (scripts/fetch-bunny.sh) fetches the mesh",
             false => "",
         };
-        format!(
-            "{}: objects[{number}].field.{key} names {}: no such file{bunny}",
-            study.path.display(),
-            path.display()
-        )
+        let key = place(study, &format!("objects[{number}].field.{key}"));
+        format!("{key} names {}: no such file{bunny}", path.display())
     };
     present.next().map(|(source, path)| (source.clone(), path)).with_context(missing)
 }
@@ -222,7 +238,7 @@ pub(crate) fn files(study: &Study, number: usize) -> Result<Vec<(String, String)
     let object = &study.file.objects[number];
     let named = |written: &str, path: &Path| -> Result<(String, String)> {
         let bytes = std::fs::read(path).with_context(|| {
-            format!("{}: objects[{number}].field.file: {}", study.path.display(), path.display())
+            format!("{}: {}", place(study, &format!("objects[{number}].field.file")), path.display())
         })?;
         Ok((written.to_owned(), sha256(&bytes)))
     };
@@ -261,7 +277,7 @@ fn field_inputs(study: &Study, number: usize) -> Result<String> {
 /// The first that is not, naming file and key.
 pub(crate) fn check(study: &Study) -> Result<()> {
     for (number, object) in study.file.objects.iter().enumerate() {
-        let place = || format!("{}: objects[{number}].field", study.path.display());
+        let place = || place(study, &format!("objects[{number}].field"));
         match &object.field {
             FieldSection::Asteroid {} => {}
             FieldSection::Mesh { .. } => {
@@ -284,7 +300,7 @@ pub(crate) fn check(study: &Study) -> Result<()> {
 }
 
 fn check_sides(study: &Study, number: usize, object: &ObjectSection) -> Result<()> {
-    let place = || format!("{}: objects[{number}].field", study.path.display());
+    let place = || place(study, &format!("objects[{number}].field"));
     let made = make(study, number, object).with_context(place)?;
     if !has_both_sides(&made, object) {
         bail!(

@@ -39,12 +39,29 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
 /// # Errors
 /// If it is no file, or something in it is wrong.
 pub(crate) fn study(path: &Path) -> Result<Study> {
-    regular(path)?;
+    check_study(path)?;
     let study = Study::load(path)?;
     for method in &study.methods {
         recipe(&study, method.id, Purpose::Benchmark)?;
     }
     Ok(study)
+}
+
+/// Says of what cannot be a study file what it may be instead.
+fn check_study(path: &Path) -> Result<()> {
+    let inside = path.join("study.toml");
+    if inside.is_file() {
+        bail!("{}: is a folder; did you mean {}?", path.display(), inside.display());
+    }
+    regular(path)?;
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    if ["csv", "tsv", "json", "jsonl", "xlsx", "parquet"].iter().any(|other| ending == *other) {
+        bail!(
+            "{}: is no study file, whose name ends in .toml; `isostudy analyse {0}` reads answers without a study",
+            path.display()
+        );
+    }
+    Ok(())
 }
 
 /// The files of a folder with an extension, in the order of names; none where there is no folder.

@@ -32,6 +32,7 @@ mod seeds;
 mod source;
 mod source_digests;
 mod store;
+mod study_key;
 mod trilinear_truth;
 mod video;
 

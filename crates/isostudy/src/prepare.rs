@@ -4,7 +4,7 @@ use crate::fields::{self, Fields};
 use crate::memory::Limit;
 use crate::place::place;
 use crate::recipe::{self, Recipe, recipe};
-use crate::seeds;
+use crate::{seeds, study_key};
 use anyhow::{Context, Result, bail};
 use isostudy_design::config::{ObjectSection, SweepSection};
 use isostudy_design::record::Purpose;
@@ -137,7 +137,6 @@ pub(crate) fn grid(object: &ObjectSection, spacing: f64) -> BoxGrid {
 /// # Errors
 /// The first that does not, naming file, key and limit.
 pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
-    let file = study.path.display();
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
     let execution = Execution { threads: cores.max(study.file.benchmark.threads as usize) };
     let check = |key: String, object: &ObjectSection, id: MethodId, wanted: Wanted| -> Result<()> {
@@ -157,7 +156,7 @@ pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
             bail!("{}: {error}", recipe::key(study, id));
         }
         check_memory(study, &method, &grid, &execution, machine_bytes)
-            .with_context(|| format!("{file}: {key} = {spacing:?}"))
+            .with_context(|| format!("{} = {spacing:?}", study_key::place(study, &key)))
     };
     for (i, object) in study.file.objects.iter().enumerate() {
         for (purpose, name) in
@@ -318,9 +317,13 @@ mod tests {
     fn what_no_recipe_has_is_refused_with_what_there_is() {
         let told = |from, to| format!("{:#}", paper_with(from, to).unwrap_err());
         let error = told("placement = \"mean-of-crossings\"", "placement = \"nearest\"");
-        for part in
-            ["paper.toml: extraction", "nearest", "mean-of-crossings", "curvature-weighted", "relaxed"]
-        {
+        for part in [
+            "paper.toml: line 59: extraction",
+            "nearest",
+            "mean-of-crossings",
+            "curvature-weighted",
+            "relaxed",
+        ] {
             assert!(error.contains(part), "{error}");
         }
         let error = told("refine_crossings = false", "refine_crossings = 4");

@@ -1,10 +1,12 @@
 //! What a study's recipes ask for: an extractor of ours, a program, or meshes that are there.
 
+use crate::study_key::place;
 use anyhow::{Context, Result, bail};
 use isostudy_design::config::Quantity;
 use isostudy_design::record::Purpose;
+use isostudy_design::wording::{did_you_mean, plainly};
 use isostudy_design::{MethodId, Study};
-use isostudy_extract::{Method, Positions, Tetrahedra};
+use isostudy_extract::{Method, Positions, Tetrahedra, kinds, presets};
 use isostudy_program::Program;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -82,11 +84,10 @@ pub(crate) fn recipe(study: &Study, id: MethodId, purpose: Purpose) -> Result<Re
 
 /// Where a method's recipe stands.
 pub(crate) fn key(study: &Study, id: MethodId) -> String {
-    let key = match study.file.methods.iter().position(|section| section.id == id) {
-        Some(i) => format!("methods[{i}].recipe"),
-        None => "extraction".to_owned(),
-    };
-    format!("{}: {key}", study.path.display())
+    match study.file.methods.iter().position(|section| section.id == id) {
+        Some(i) => place(study, &format!("methods[{i}].recipe")),
+        None => place(study, "extraction"),
+    }
 }
 
 fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
@@ -94,7 +95,7 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
     let keys = recipe.settings.clone();
     match StudyKind::of(&recipe.kind) {
         Some(StudyKind::Program) => {
-            let keys: ProgramKeys = toml::Value::Table(keys).try_into()?;
+            let keys: ProgramKeys = keys_of(keys)?;
             for (name, value, most) in
                 [("time_limit_s", keys.time_limit_s, 86_400.0), ("memory_gib", keys.memory_gib, 1024.0)]
             {
@@ -110,7 +111,7 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
             }))
         }
         Some(StudyKind::Meshes) => {
-            let keys: MeshKeys = toml::Value::Table(keys).try_into()?;
+            let keys: MeshKeys = keys_of(keys)?;
             let objects: Vec<&str> = study.file.objects.iter().map(|object| object.id.as_str()).collect();
             if let Some(other) = keys.files.keys().find(|id| !objects.contains(&id.as_str())) {
                 bail!("files.{other}: is not an object of this study, which has {}", objects.join(", "));
@@ -124,15 +125,13 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
             let (kind, mut keys) = (recipe.kind.as_str(), keys);
             keys.insert("kind".into(), kind.into());
             let method = toml::Value::Table(keys).try_into().map_err(|error: toml::de::Error| {
-                let error = error.to_string();
-                let own = StudyKind::ALL.map(|kind| format!("`{}`", kind.name())).join(", ");
-                // The study's own kinds are kinds too; values of other keys have variants as well.
-                let is_kind = error.contains(&format!("unknown variant `{kind}`"));
-                let text = match is_kind {
-                    true => format!("{}, {own}", error.lines().next().unwrap_or_default()),
-                    false => error.trim_end().to_owned(),
-                };
-                anyhow::Error::msg(text)
+                // Values of other keys have variants as well.
+                let is_kind = kinds().iter().all(|known| known.name != kind);
+                anyhow::Error::msg(if is_kind {
+                    no_kind(kind, true)
+                } else {
+                    plainly(error.to_string().trim_end())
+                })
             })?;
             Ok(Recipe::Extractor(match (method, purpose) {
                 (Method::Tetrahedra(of), Purpose::Indexed) => {
@@ -142,6 +141,41 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
             }))
         }
     }
+}
+
+fn keys_of<T: serde::de::DeserializeOwned>(keys: toml::Table) -> Result<T> {
+    let keys = toml::Value::Table(keys).try_into();
+    keys.map_err(|error: toml::de::Error| anyhow::Error::msg(plainly(error.to_string().trim_end())))
+}
+
+/// A recipe without the keys that have their defaults.
+fn shortest(method: Method) -> String {
+    let Ok(toml::Value::Table(mut keys)) = toml::Value::try_from(method) else { return String::new() };
+    for key in keys.keys().cloned().collect::<Vec<_>>() {
+        let mut without = keys.clone();
+        without.remove(&key);
+        if toml::Value::Table(without.clone()).try_into() == Ok(method) {
+            keys = without;
+        }
+    }
+    let kind = keys.remove("kind").into_iter().map(|kind| format!("kind = {kind}"));
+    let others = keys.iter().map(|(key, value)| format!("{key} = {value}"));
+    format!("{{ {} }}", kind.chain(others).collect::<Vec<_>>().join(", "))
+}
+
+/// What is wrong with a kind that no recipe has: the kinds that there are, with those of a study, and the one that was meant. The
+/// name of a method is no kind, and has a recipe.
+pub(crate) fn no_kind(kind: &str, in_study: bool) -> String {
+    let own = StudyKind::ALL.map(StudyKind::name);
+    let own: &[&str] = if in_study { &own } else { &[] };
+    let known: Vec<&str> = kinds().iter().map(|kind| kind.name).chain(own.iter().copied()).collect();
+    let allowed = known.iter().map(|kind| format!("\"{kind}\"")).collect::<Vec<_>>().join(", ");
+    let named = presets().iter().find(|preset| preset.id == kind.to_lowercase());
+    let meant = match named {
+        Some(preset) => format!("; the method {} has the recipe {}", preset.id, shortest(preset.method)),
+        None => did_you_mean(kind, known),
+    };
+    format!("kind = \"{kind}\": is no kind; allowed: {allowed}{meant}")
 }
 
 /// Checks that every recipe is one, and that programs and meshes are there.
@@ -177,7 +211,7 @@ fn check_budget(study: &Study, method: &isostudy_design::Method) -> Result<()> {
         |id| Ok::<bool, anyhow::Error>(matches!(recipe(study, id, Purpose::Benchmark)?, Recipe::Meshes(_)));
     let i = study.place(method.id);
     let [name, what] = budget.quantity.names();
-    let key = format!("{}: methods[{i}].match.{name} = {}", study.path.display(), budget.of);
+    let key = format!("{} = {}", place(study, &format!("methods[{i}].match.{name}")), budget.of);
     if is_there(method.id)? {
         bail!("{key}: meshes that are there have no spacing to choose");
     }

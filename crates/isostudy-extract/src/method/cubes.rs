@@ -8,7 +8,7 @@ use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topolog
 const CUBES: &str = "Lorensen & Cline 1987, with faces that agree";
 const TRILINEAR: &str = "Chernyaev 1995, with every case decided by the interpolant's saddles";
 const EDGE_GROUPS: &str = "Lorensen & Cline 1987; Dietrich et al. 2008";
-const BEST: &str = "Lorensen & Cline 1987; best diagonals: see isostudy_extract::Diagonals";
+const BEST: &str = "Lorensen & Cline 1987; docs/study-file.md explains its diagonals";
 
 /// By name.
 pub(super) const PRESETS: &[Preset] = &[

@@ -9,9 +9,9 @@ use crate::settings::{ExtractSettings, Placement, Positions, Topology};
 const COSTEN: &str = "Costen 2026";
 const TREECE: &str = "Treece, Prager & Gee 1999; Costen 2026";
 const COLLAPSED: &str = "Costen 2026; Dey, Edelsbrunner, Guha & Nekhayev 1999";
-const OWN: &str = "not in the paper; see Arrangement and Clustering of isostudy_extract";
+const OWN: &str = "no paper; docs/study-file.md explains it";
 const WARPED: &str = "Labelle & Shewchuk 2007, the warp and the boundary";
-const PLACED: &str = "Treece, Prager & Gee 1999; on placement see isostudy_extract::Placement";
+const PLACED: &str = "Treece, Prager & Gee 1999; docs/study-file.md explains its placement";
 
 /// By name.
 pub(super) const PRESETS: &[Preset] = &[

@@ -5,9 +5,9 @@ use super::study_forms::forms;
 use crate::outcome::Outcome;
 use crate::terminal::{counted, say};
 use crate::{input, store};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, anyhow, ensure};
 use clap::Args;
-use isostudy_serve::download;
+use isostudy_serve::download::{self, DownloadError};
 use isostudy_serve::export::{self, Given};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -42,7 +42,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             place()
         );
         let text = std::fs::read_to_string(path).with_context(place)?;
-        let given = download::read(&text, &file.study).with_context(place)?;
+        let given = download::read(&text, &file.study).map_err(|error| match error {
+            DownloadError::Columns { .. } => anyhow!(
+                "{}: {error}. `isostudy analyse {} --responses {0}` reads answers of other kinds",
+                place(),
+                arguments.study.display()
+            ),
+            other => anyhow::Error::from(other).context(place()),
+        })?;
         ensure!(!given.is_empty(), "{}: no answers in it", place());
         export::lines(&given, &key).with_context(place)?;
         again += download::add(&mut all, given).with_context(place)?;

@@ -31,7 +31,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let (file, key, digest) = forms(&study)?;
     let folder = answers_folder(&study, arguments.answers.as_ref());
     if !folder.join("answers.sqlite").is_file() {
-        bail!("{}: no answers.sqlite there", folder.display());
+        bail!(
+            "{}: no answers.sqlite there; `isostudy serve` keeps answers in it, and --answers names another folder",
+            folder.display()
+        );
     }
     let stored = journal::kept(&folder, &file.study)?;
     if stored.digest != digest {

@@ -8,6 +8,7 @@ use crate::store::Store;
 use crate::terminal::say;
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use isostudy_design::wording::did_you_mean;
 use isostudy_design::{ConfigurationId, Study};
 use std::path::{Path, PathBuf};
 
@@ -125,7 +126,8 @@ pub(super) fn with_selection(
         let id: ConfigurationId = text.parse().with_context(|| format!("--only {text}"))?;
         if !study.configurations.iter().any(|configuration| configuration.id == id) {
             let known: Vec<String> = study.configurations.iter().map(|c| c.id.to_string()).collect();
-            bail!("--only {text}: this study has {}", known.join(", "));
+            let meant = did_you_mean(text, known.iter().map(String::as_str));
+            bail!("--only {text}: this study has {}{meant}", known.join(", "));
         }
         only.push(id);
     }

@@ -54,7 +54,11 @@ pub(crate) struct Arguments {
 
 fn share(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if value > 0.0 && value < 1.0 { Ok(value) } else { Err("allowed: above 0 and below 1".into()) }
+    if value > 0.0 && value < 1.0 {
+        Ok(value)
+    } else {
+        Err("allowed: above 0 and below 1, such as 0.69 for 69 %".into())
+    }
 }
 
 fn deviation(text: &str) -> Result<f64, String> {

@@ -1,6 +1,7 @@
 //! A method on the command line: by its name, or by the recipe that a study file would have for it.
 
-use crate::recipe::StudyKind;
+use crate::recipe::{StudyKind, no_kind};
+use isostudy_design::wording::{nearest, plainly};
 use isostudy_extract::{Method, Preset, kinds, presets};
 use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
@@ -43,8 +44,21 @@ pub(super) fn preset(id: &str) -> Result<Method, String> {
     let found = presets().iter().find(|preset| preset.id == id);
     let known = || presets().iter().map(|Preset { id, .. }| *id).collect::<Vec<_>>().join(", ");
     found.map(|preset| preset.method).ok_or_else(|| {
-        format!("no method has this name; `isostudy methods` explains those that do: {}", known())
+        let meant = meant(id).map_or_else(String::new, |other| format!("; did you mean {other}?"));
+        match &*meant {
+            "" => format!("no method has this name; `isostudy methods` explains those that do: {}", known()),
+            meant => format!("no method has this name{meant} `isostudy methods` lists all"),
+        }
     })
+}
+
+/// The preset whose id, or else whose label, is nearest to a name.
+fn meant(name: &str) -> Option<&'static str> {
+    let of_label = || {
+        let label = nearest(name, presets().iter().map(|preset| preset.label))?;
+        presets().iter().find(|preset| preset.label == label).map(|preset| preset.id)
+    };
+    nearest(name, presets().iter().map(|preset| preset.id)).or_else(of_label)
 }
 
 /// The method of a recipe, an inline table as in a study file.
@@ -52,6 +66,9 @@ pub(super) fn preset(id: &str) -> Result<Method, String> {
 /// # Errors
 /// If it is no TOML, no table, or of a kind that goes with studies alone; if a key or a value is unknown, with those that are known.
 pub(super) fn recipe(text: &str) -> Result<Method, String> {
+    if presets().iter().any(|preset| preset.id == text) {
+        return Err(format!("is the name of a method: give --method {text}"));
+    }
     let value = ValueDeserializer::parse(text).and_then(toml::Value::deserialize);
     let value = value.map_err(|error| error.to_string().trim_end().to_owned())?;
     let toml::Value::Table(table) = &value else {
@@ -67,8 +84,11 @@ pub(super) fn recipe(text: &str) -> Result<Method, String> {
     if let Some(of) = StudyKind::of(kind) {
         return Err(format!("kind = \"{kind}\": {}; allowed here: {}", why_not(of), known_kinds()));
     }
+    if kinds().iter().all(|known| known.name != kind) {
+        return Err(no_kind(kind, false));
+    }
     // Errors in values do not say their key, for what has a kind is read twice.
-    let known = Method::deserialize(value.clone()).map_err(|error| error.message().to_owned());
+    let known = Method::deserialize(value.clone()).map_err(|error| plainly(error.message()));
     known.map_err(|error| match guilty(table) {
         Some((key, value)) => format!("{key} = {value}: {error}"),
         None => error,
