@@ -343,3 +343,39 @@ fn a_download_brings_no_formula() {
     let Run { code, stderr: said, .. } = collect(Path::new("/dev/null"));
     assert!(code == Some(2) && said == "isostudy: /dev/null: not a file\n", "{said}");
 }
+
+/// Between the first answer and `analyse`, the page and the command say that answers are there, and what reads them.
+#[test]
+fn a_page_knows_of_answers_that_it_has_not_read() {
+    let fixture = Fixture::balanced();
+    let id = "quick";
+    let study = || {
+        let run = Run::of(fixture.command("study").current_dir(fixture.folder()));
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let page = std::fs::read_to_string(fixture.out().join("index.html")).unwrap();
+        (run.stderr, page.replace("&#x2f;", "/").replace("&#x27;", "'"))
+    };
+    let (said, page) = study();
+    assert!(!said.contains("isostudy analyse") && page.contains("Nobody's answers"), "{said}");
+
+    let folder = format!("answers/{id}");
+    let mut serve = fixture.command("serve");
+    serve.current_dir(fixture.folder()).args(["--port", "0", "--admin-token", TOKEN, "--with-faults"]);
+    let server = Server::of(serve);
+    for (session, count) in [(begin(server.address), 2), (begin(server.address), 1)] {
+        for question in 0..count {
+            assert_eq!(
+                post(server.address, "/api/answers", &answer(&session, question, "L")).unwrap().0,
+                200
+            );
+        }
+    }
+    drop(server);
+    let (said, page) = study();
+    let analyse = format!("isostudy analyse {}", fixture.config().display());
+    assert!(said.contains(&format!("{folder} holds 3 answers")) && said.contains(&analyse), "{said}");
+    for part in [&format!("{folder} holds 3 answers of 2 people"), &analyse] {
+        assert!(page.contains(part.as_str()), "{part}");
+    }
+    assert!(!page.contains("Nobody's answers") && !page.contains("Ask people:"));
+}

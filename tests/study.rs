@@ -1,6 +1,6 @@
 //! The whole chain as a user runs it: the `isostudy` command on a small study with real answers.
 
-use crate::command::{Run, isostudy};
+use crate::command::{Folder, Run, isostudy};
 use crate::fixture::{Fixture, files, without_measured_times};
 use crate::page;
 use std::collections::{BTreeMap, BTreeSet};
@@ -513,4 +513,49 @@ fn answers_that_do_not_fit_are_refused_with_their_place() {
     let Run { code, stderr: said, .. } = fixture.run("analyse", &["--responses", path.to_str().unwrap()]);
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("answers.csv") && said.contains("Q3"), "{said}");
+}
+
+/// Two study files of one id would write one folder: the second is refused with both names, wherever its results go by default.
+#[test]
+fn two_studies_of_one_id_do_not_write_over_each_other() {
+    let folder = Folder::new();
+    let run = |arguments: &[&str]| Run::of(folder.isostudy().args(arguments));
+    assert_eq!(run(&["new", "my-study"]).code, Some(0));
+    let second = run(&["new", "My Study"]);
+    assert!(second.stderr.contains("my-study/study.toml has the id my-study"), "{}", second.stderr);
+    assert!(folder.read("My Study/study.toml").contains("id = \"my-study-2\""));
+
+    std::fs::create_dir_all(folder.path("other/cpu")).unwrap();
+    for file in ["study.toml", "cpu/x86-64-v3.toml"] {
+        std::fs::copy(folder.path("my-study").join(file), folder.path("other").join(file)).unwrap();
+    }
+    let makes: [&[&str]; 2] = [
+        &["extract", "STUDY", "--only", "torus_bi"],
+        &["design", "power", "STUDY", "--studies", "100", "--participants", "6"],
+    ];
+    for make in makes {
+        let of = |study: &str| {
+            let arguments: Vec<&str> =
+                make.iter().map(|word| if *word == "STUDY" { study } else { word }).collect();
+            run(&arguments)
+        };
+        let first = of("my-study/study.toml");
+        assert_eq!(first.code, Some(0), "{}", first.stderr);
+        let results = folder.path("results");
+        let before = files(&results);
+        let refused = of("other/study.toml");
+        assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+        for part in
+            ["results of my-study/study.toml, not of other/study.toml", "study.id", "--out", ".stages/study"]
+        {
+            assert!(refused.stderr.contains(part), "{part}: {}", refused.stderr);
+        }
+        assert_eq!(files(&results), before);
+        assert_eq!(of("my-study/study.toml").code, Some(0));
+    }
+    // What was moved keeps its results.
+    std::fs::rename(folder.path("my-study/study.toml"), folder.path("my-study/renamed.toml")).unwrap();
+    let moved = run(&["extract", "my-study/renamed.toml", "--only", "torus_bi"]);
+    assert!(moved.code == Some(0) && moved.stderr.contains("which is gone"), "{}", moved.stderr);
+    assert_eq!(run(&["extract", "other/study.toml", "--only", "torus_bi"]).code, Some(2));
 }

@@ -2,12 +2,13 @@
 
 mod self_test;
 
-use super::given_answers::{answers_folder, served};
+use super::given_answers::served;
 use super::reading_rules::ReadingRules;
+use crate::origin;
 use crate::outcome::Outcome;
 use crate::store::{self, Store};
 use crate::terminal::say;
-use crate::{answer_files, input, manifest, pipeline};
+use crate::{answer_files, input, kept_answers, manifest, pipeline};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use isostudy_design::Published;
@@ -70,7 +71,7 @@ fn analyse(arguments: &Arguments) -> Result<()> {
         study.published = Published::default();
         study.responses.clone_from(&arguments.responses);
     }
-    let folder = answers_folder(&study, None);
+    let folder = kept_answers::folder(&study, None);
     if study.responses.is_none() {
         study.responses = served(&study, &folder)?;
     }
@@ -86,6 +87,7 @@ fn analyse(arguments: &Arguments) -> Result<()> {
     let folder = || Path::new("results").join(format!("{}-answers", study.file.study.id));
     let out = arguments.out.clone().unwrap_or_else(folder);
     let store = Store::open(&out, false)?;
+    origin::claim(&out, &study.path)?;
     let said = pipeline::write_answers_only(&study, reading, &store)?;
     store.remove_retired()?;
     manifest::write(&manifest::Origin::of(&study)?, &store)?;
@@ -120,6 +122,7 @@ fn analyse_without_study(arguments: &Arguments, path: &Path) -> Result<()> {
     let folder = || Path::new("results").join(format!("{name}-answers"));
     let out = arguments.out.clone().unwrap_or_else(folder);
     let store = Store::open(&out, false)?;
+    origin::claim(&out, path)?;
     let said = pipeline::write_without_study(path, &section, &reading, &store)?;
     store.remove_retired()?;
     let digest = store::sha256(&input::bytes(path)?);

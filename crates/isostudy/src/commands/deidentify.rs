@@ -1,10 +1,10 @@
 //! `isostudy deidentify`: a server's answers without anything that leads to a person.
 
-use super::given_answers::{answers_folder, csv, participants};
+use super::given_answers::{csv, participants};
 use super::study_forms::forms;
 use crate::outcome::Outcome;
 use crate::terminal::say;
-use crate::{input, store};
+use crate::{input, kept_answers, store};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use isostudy_serve::{deidentify, journal};
@@ -29,8 +29,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let study = input::study(&arguments.study)?;
     let (file, key, digest) = forms(&study)?;
-    let folder = answers_folder(&study, arguments.answers.as_ref());
-    if !folder.join("answers.sqlite").is_file() {
+    let folder = kept_answers::folder(&study, arguments.answers.as_ref());
+    if !kept_answers::are_in(&folder) {
         bail!(
             "{}: no answers.sqlite there; `isostudy serve` keeps answers in it, and --answers names another folder",
             folder.display()

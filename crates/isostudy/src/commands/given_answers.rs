@@ -1,7 +1,7 @@
 //! The answers that people gave through the page: where a server keeps them, and as a file that `analyse` reads.
 
 use super::study_forms::forms;
-use crate::store;
+use crate::{kept_answers, store};
 use anyhow::Result;
 use isostudy_design::Study;
 use isostudy_design::forms::KeyEntry;
@@ -9,14 +9,9 @@ use isostudy_serve::export::{self, Given, HEADER};
 use isostudy_serve::{deidentify, journal};
 use std::path::{Path, PathBuf};
 
-/// Answers are never among the results, which can be made again.
-pub(super) fn answers_folder(study: &Study, given: Option<&PathBuf>) -> PathBuf {
-    given.cloned().unwrap_or_else(|| Path::new("answers").join(&study.file.study.id))
-}
-
 /// The answers that `isostudy serve` kept, if there are any, as a file beside them.
 pub(super) fn served(study: &Study, folder: &Path) -> Result<Option<PathBuf>> {
-    if !folder.join("answers.sqlite").is_file() {
+    if !kept_answers::are_in(folder) {
         return Ok(None);
     }
     let (file, key, _) = forms(study)?;

@@ -1,5 +1,6 @@
 //! `isostudy new`: a study file of one's own to begin with.
 
+use crate::origin;
 use crate::outcome::Outcome;
 use crate::store;
 use crate::terminal::say;
@@ -48,7 +49,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     store::write_new(&target, TARGET_TEXT.as_bytes())?;
-    let id = id(folder)?;
+    let wanted = id(folder)?;
+    let taken = taken(folder);
+    let id = free(&wanted, &taken);
+    if let Some((_, other)) = taken.iter().find(|(id, _)| *id == wanted) {
+        tell!(
+            "{} has the id {wanted}; this study is called {id}, so that neither writes over the other",
+            other.display()
+        );
+    }
     if let Err(error) = store::write_new(&study, STUDY.replacen(ID, &format!("id = \"{id}\""), 1).as_bytes())
     {
         store::remove_if_there(&target)?;
@@ -81,6 +90,36 @@ fn id(folder: &Path) -> Result<String> {
     Ok(if id.is_empty() { "my-study".into() } else { id })
 }
 
+/// Ids that other studies have, and their files: those in folders beside this one, and those whose results are here.
+fn taken(folder: &Path) -> Vec<(String, PathBuf)> {
+    let own = folder.canonicalize().unwrap_or_else(|_| folder.into());
+    let folders = |of: &Path| -> Vec<PathBuf> {
+        let entries = fs::read_dir(of).into_iter().flatten().flatten();
+        let mut folders: Vec<PathBuf> =
+            entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+        folders.sort();
+        folders
+    };
+    let beside = own.parent().map(folders).unwrap_or_default().into_iter().filter(|other| *other != own);
+    let beside = beside.map(|other| other.join("study.toml")).filter_map(|file| {
+        let table: toml::Table = fs::read_to_string(&file).ok()?.parse().ok()?;
+        let id = table.get("study")?.get("id")?.as_str()?.to_owned();
+        Some((id, file))
+    });
+    let results = folders(Path::new("results")).into_iter().filter_map(|results| {
+        let owner = origin::owner(&results).filter(|owner| owner.is_file())?;
+        Some((results.file_name()?.to_string_lossy().into_owned(), owner))
+    });
+    beside.chain(results).collect()
+}
+
+/// The id, or the first with a number behind it that nobody has.
+fn free(wanted: &str, taken: &[(String, PathBuf)]) -> String {
+    let is_free = |id: &String| taken.iter().all(|(other, _)| other != id);
+    let numbered = (2..).map(|number| format!("{}-{number}", &wanted[..wanted.len().min(58)]));
+    std::iter::once(wanted.to_owned()).chain(numbered).find(is_free).expect("numbers do not end")
+}
+
 /// A path as a shell takes it.
 fn quoted(path: &Path) -> String {
     let text = path.display().to_string();
@@ -97,6 +136,14 @@ mod tests {
         let file: isostudy_design::config::StudyFile = toml::from_str(STUDY).unwrap();
         assert_eq!(file.benchmark.target, TARGET);
         assert_eq!(STUDY.matches(ID).count(), 1);
+        let (asked, forms) = (file.comparisons.len(), file.forms.unwrap());
+        let pairs = asked + (forms.repeats + forms.controls) as usize;
+        assert_eq!(forms.max_questions as usize, pairs);
+        let told = format!(
+            "judges {pairs} pairs: {asked} comparisons, {} of them asked again with the\n# sides swapped, and {} controls.",
+            forms.repeats, forms.controls
+        );
+        assert!(STUDY.contains(&told), "{told}");
     }
 
     #[test]
@@ -112,6 +159,26 @@ mod tests {
             fs::create_dir(&path).unwrap();
             assert_eq!(id(&path).unwrap(), want);
         }
+    }
+
+    #[test]
+    fn an_id_that_another_has_gets_a_number() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in [
+            ("my-study", "[study]\nid = \"my-study\"\n"),
+            ("odd", "[study]\nid = \"my-study-2\"\n"),
+            ("broken", "["),
+        ] {
+            fs::create_dir(folder.path().join(name)).unwrap();
+            fs::write(folder.path().join(name).join("study.toml"), text).unwrap();
+        }
+        let own = folder.path().join("My Study");
+        fs::create_dir(&own).unwrap();
+        let taken = taken(&own);
+        let ids: Vec<&str> = taken.iter().map(|(id, _)| id.as_str()).collect();
+        assert!(ids.starts_with(&["my-study", "my-study-2"]), "{ids:?}");
+        assert_eq!(free(&id(&own).unwrap(), &taken), "my-study-3");
+        assert_eq!(free("other", &taken), "other");
     }
 
     #[test]

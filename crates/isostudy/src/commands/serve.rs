@@ -2,9 +2,9 @@
 
 use super::bundle::{self, Made, stimuli, videos};
 use super::checked_study;
-use super::given_answers::answers_folder;
 use super::study_forms::forms;
 use super::study_run::Run;
+use crate::kept_answers;
 use crate::outcome::Outcome;
 use crate::pipeline::Videos;
 use anyhow::{Result, bail};
@@ -71,7 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         completion: study.file.forms.as_ref().and_then(|forms| forms.completion.clone()),
         media,
         stimuli: stimuli(&out),
-        answers: answers_folder(&study, arguments.answers.as_ref()),
+        answers: kept_answers::folder(&study, arguments.answers.as_ref()),
         address: SocketAddr::new(arguments.address, arguments.port),
         admin_token: admin_token.clone(),
         file,

@@ -2,6 +2,8 @@
 
 use super::study_run::{Run, with_page};
 use crate::outcome::Outcome;
+use crate::terminal::counted;
+use crate::{input, kept_answers};
 use anyhow::Result;
 use clap::Args;
 
@@ -16,5 +18,14 @@ pub(crate) struct Arguments {
 /// # Errors
 /// If the study is wrong or a file cannot be written.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    with_page(&arguments.run, |pipeline| pipeline.study())
+    let outcome = with_page(&arguments.run, |pipeline| pipeline.study())?;
+    if let Some(waiting) = kept_answers::waiting(&input::study(&arguments.run.study)?) {
+        tell!(
+            "{} holds {}, not read here: `isostudy analyse {}` reads them",
+            waiting.folder.display(),
+            counted(waiting.answers as u64, "answer"),
+            arguments.run.study.display()
+        );
+    }
+    Ok(outcome)
 }

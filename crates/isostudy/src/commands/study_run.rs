@@ -1,6 +1,7 @@
 //! What commands that work on a study have in common: the options that say which, and the pipeline that does the work.
 
 use super::checked_study;
+use crate::origin;
 use crate::outcome::Outcome;
 use crate::pipeline::Pipeline;
 use crate::recipe;
@@ -101,6 +102,7 @@ fn on(
     }
     let out = run.out.clone().unwrap_or_else(|| default_folder(study));
     let store = Store::open(&out, run.force)?;
+    origin::claim(&out, &study.path)?;
     let mut pipeline = Pipeline::new(study, store, threads);
     work(&mut pipeline, &out)?;
     pipeline.finish()?;

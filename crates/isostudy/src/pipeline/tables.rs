@@ -4,8 +4,10 @@ use super::formats::{write_figure, write_table};
 use super::pages::{Abstract, PictureData, fits, write_report};
 use super::pictures::ShownFirst;
 use super::{Meshes, Pipeline};
+use crate::kept_answers::{self, Waiting};
 use crate::source_digests;
 use crate::store::{Inputs, Stamp, Store, Writer, sha256};
+use crate::terminal::counted;
 use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
 use isostudy_design::Study;
@@ -13,7 +15,7 @@ use isostudy_design::config::ResponsesSection;
 use isostudy_inference::tally::QuestionCount;
 use isostudy_inference::{Answered, Preferences, Results};
 use isostudy_paper::Paper;
-use isostudy_report::{Figure, LongFrame, OVERVIEW};
+use isostudy_report::{Figure, LongFrame, OVERVIEW, Report};
 use isostudy_responses::Reading;
 use isostudy_table::Table;
 use serde::{Deserialize, Serialize};
@@ -36,7 +38,10 @@ impl Pipeline<'_> {
             inputs = inputs.stamp(stamp);
         }
         let left_out = self.left_out();
-        let inputs = inputs.value("left out", &left_out);
+        let waiting = kept_answers::waiting(self.study);
+        let inputs = inputs
+            .value("left out", &left_out)
+            .value("waiting", &waiting.as_ref().map(|of| (of.answers, of.people)));
         let stamp = self.store.stage("tables", inputs, |writer| {
             let records = self.mesh_records(meshes)?;
             let run = self.bench_run(timings)?;
@@ -53,7 +58,8 @@ impl Pipeline<'_> {
             };
             let results = Results::of(&inputs);
             let paper = Paper::of(&results);
-            write(writer, &results, &paper, &self.read_pictures(shown)?, true)?;
+            let gallery = Some(waiting.as_ref().map(|of| Unread::of(self.study, of)));
+            write(writer, &results, &paper, &self.read_pictures(shown)?, gallery)?;
             writer.write_json(UNEXPLAINED, &paper.unexplained_differences())
         })?;
         step.count(stamp.redone);
@@ -87,7 +93,7 @@ pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store)
     let paper = Paper::of(&results);
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;
-        write(writer, &results, &paper, &[], false)
+        write(writer, &results, &paper, &[], None)
     })?;
     Ok(Said { tables: all_tables(&results, &paper), found: isostudy_report::found(&results) })
 }
@@ -174,22 +180,60 @@ pub(super) const ABSTRACT: &str = "tables/abstract.json";
 pub(super) const VOTES: &str = "tables/votes.json";
 pub(super) const FIGURE_CONTENTS: &str = "figures/contents.json";
 
-/// `gallery` says whether an `index.html` will stand beside the report.
+/// Lines of the abstract about answers that are there and were not read.
+struct Unread {
+    by_whom: String,
+    next: String,
+}
+
+impl Unread {
+    fn of(study: &Study, Waiting { answers, people, folder }: &Waiting) -> Self {
+        let answers = counted(*answers as u64, "answer");
+        let people = if *people == 1 { "1 person".to_owned() } else { format!("{people} people") };
+        let (file, id) = (study.path.display(), &study.file.study.id);
+        Self {
+            by_whom: format!(
+                "{} holds {answers} of {people}, which this page has not read.",
+                folder.display()
+            ),
+            next: format!(
+                "Run isostudy analyse {file}. It reads the answers and writes results/{id}-answers/report.html."
+            ),
+        }
+    }
+
+    /// In place of what the report says where there are no answers.
+    fn say_in(self, report: &mut Report) {
+        for line in &mut report.summary {
+            match line.label {
+                "By whom" => line.text.clone_from(&self.by_whom),
+                "Next" => line.text.clone_from(&self.next),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// `gallery` says whether an `index.html` will stand beside the report, and what it has to say of answers that were not read.
 fn write(
     writer: &mut Writer<'_>,
     results: &Results<'_>,
     paper: &Paper<'_>,
     pictures: &[PictureData],
-    gallery: bool,
+    gallery: Option<Option<Unread>>,
 ) -> Result<()> {
     let tables = all_tables(results, paper);
     write_tables(writer, &tables)?;
     let figures = isostudy_report::figures(results).context("figures")?;
     write_figures(writer, &figures)?;
     let (overview, figures) = with_overview(figures);
-    let report = isostudy_report::report(results, &tables, &figures, paper.published(&tables));
-    write_report(writer, &report, overview.as_ref(), pictures, gallery)?;
-    if gallery {
+    let mut report = isostudy_report::report(results, &tables, &figures, paper.published(&tables));
+    let has_gallery = gallery.is_some();
+    if let Some(unread) = gallery.flatten() {
+        unread.say_in(&mut report);
+    }
+    write_report(writer, &report, overview.as_ref(), pictures, has_gallery)?;
+    if has_gallery {
         writer.write_json(ABSTRACT, &Abstract::of(&report))?;
         writer.write_json(VOTES, &votes(results))?;
     }

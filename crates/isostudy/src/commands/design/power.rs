@@ -1,11 +1,12 @@
 //! `isostudy design power`: how likely a study is to find a preference. It is simulated in `isostudy_inference::power`.
 
 use super::forms_section;
-use crate::commands::given_answers::{answers_folder, served};
+use crate::commands::given_answers::served;
+use crate::origin;
 use crate::outcome::Outcome;
 use crate::terminal::progress::Step;
 use crate::terminal::{counted, say};
-use crate::{answer_files, input, store};
+use crate::{answer_files, input, kept_answers, store};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use isostudy_design::Study;
@@ -96,7 +97,7 @@ fn spread(arguments: &Arguments, study: &Study) -> Result<f64> {
     if let Some(path) = &arguments.spread_of {
         study.responses = Some(path.clone());
     } else if study.responses.is_none() {
-        study.responses = served(&study, &answers_folder(&study, None))?;
+        study.responses = served(&study, &kept_answers::folder(&study, None))?;
     }
     let Some(path) = study.responses.clone() else {
         tell!(
@@ -162,6 +163,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let folder = || Path::new("results").join(format!("{}-power", study.file.study.id));
     let out = arguments.out.clone().unwrap_or_else(folder);
     std::fs::create_dir_all(&out).with_context(|| out.display().to_string())?;
+    origin::claim(&out, &study.path)?;
     let mut files =
         vec![("power.svg".to_owned(), figure.svg.into_bytes()), ("power.png".to_owned(), figure.png)];
     for table in &tables {
