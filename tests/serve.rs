@@ -330,9 +330,9 @@ fn a_download_brings_no_formula() {
     assert_eq!(over.code, Some(2));
     assert!(over.stderr.contains("download.csv: is a download; it would be written over"), "{}", over.stderr);
     for (nothing, what) in [
-        ("", "the file is empty"),
-        ("hello\n", "the file has hello"),
-        ("[1,2]\n", "the file has [1, 2]"),
+        ("", "This file is empty"),
+        ("hello\n", "This file has hello"),
+        ("[1,2]\n", "This file has [1, 2]"),
         ("participant,form,order,stimulus,choice,rt_ms\n", "empty.csv: no answers in it"),
     ] {
         let empty = fixture.folder().join("empty.csv");

@@ -55,8 +55,9 @@ pub fn plainly(message: &str) -> String {
     let mut said = Vec::new();
     for line in message.lines() {
         let line = without_types(line);
-        said.push(match unknown(&line) {
-            Some((word, known)) => line.clone() + &did_you_mean(word, known),
+        let meant = unknown(&line).and_then(|(word, known)| nearest(word, known));
+        said.push(match meant {
+            Some(other) => line.replacen(", expected", &format!("; did you mean {other}? Expected"), 1),
             None => line,
         });
     }
@@ -176,10 +177,10 @@ mod tests {
         let said = plainly("3 | x\nunknown variant `flatt`, expected one of `smooth`, `flat`");
         assert_eq!(
             said,
-            "3 | x\nunknown variant `flatt`, expected one of `smooth`, `flat`; did you mean flat?"
+            "3 | x\nunknown variant `flatt`; did you mean flat? Expected one of `smooth`, `flat`"
         );
         let said = plainly("unknown field `memory_gb`, expected `memory_gib`");
-        assert!(said.ends_with("expected `memory_gib`; did you mean memory_gib?"), "{said}");
+        assert!(said.ends_with("; did you mean memory_gib? Expected `memory_gib`"), "{said}");
         let said = plainly("invalid type: string \"mc\", expected struct Recipe");
         assert_eq!(said, "invalid type: string \"mc\", expected a table");
         let said = plainly("invalid type: map, expected f64");

@@ -73,7 +73,7 @@ pub enum DownloadError {
     Csv(#[from] csv::Error),
     /// Not CSV with the page's columns.
     #[error(
-        "line 1: is no download of the questionnaire's page, which has the columns {}: {}",
+        "line 1: is no download of the questionnaire's page. It needs the columns {}. {}",
         NEEDED.join(", "),
         lacking(missing, found)
     )]
@@ -152,10 +152,10 @@ fn rows(text: &str) -> Result<Vec<Row>, DownloadError> {
 /// What a file with these columns has in their place.
 fn lacking(missing: &[&str], found: &[String]) -> String {
     let found = match found {
-        [] => "the file is empty".to_owned(),
-        _ => format!("the file has {}", found.join(", ")),
+        [] => "This file is empty".to_owned(),
+        _ => format!("This file has {}", found.join(", ")),
     };
-    if missing.len() == NEEDED.len() { found } else { format!("{} is missing; {found}", missing.join(", ")) }
+    if missing.len() == NEEDED.len() { found } else { format!("Missing: {}. {found}", missing.join(", ")) }
 }
 
 /// Which cell of a row is to blame.
@@ -278,16 +278,16 @@ mod tests {
         assert_eq!(order, "line 3: order = x: allowed: a whole number");
         let other_column = CSV.replace("stimulus,", "pair,");
         for (other, said) in [
-            ("a,b\n1,2\n", "the file has a, b"),
+            ("a,b\n1,2\n", "This file has a, b"),
             (
                 other_column.as_str(),
-                "stimulus is missing; the file has participant, form, order, pair, choice, rt_ms, answered",
+                "Missing: stimulus. This file has participant, form, order, pair, choice, rt_ms, answered",
             ),
-            ("", "the file is empty"),
+            ("", "This file is empty"),
         ] {
             let needed = "participant, form, order, stimulus, choice, rt_ms";
             let start = format!(
-                "line 1: is no download of the questionnaire's page, which has the columns {needed}: "
+                "line 1: is no download of the questionnaire's page. It needs the columns {needed}. "
             );
             assert_eq!(wrong(other), start + said);
         }

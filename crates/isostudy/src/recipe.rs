@@ -172,10 +172,11 @@ pub(crate) fn no_kind(kind: &str, in_study: bool) -> String {
     let allowed = known.iter().map(|kind| format!("\"{kind}\"")).collect::<Vec<_>>().join(", ");
     let named = presets().iter().find(|preset| preset.id == kind.to_lowercase());
     let meant = match named {
-        Some(preset) => format!("; the method {} has the recipe {}", preset.id, shortest(preset.method)),
+        Some(preset) => format!(". The method {} has the recipe {}.", preset.id, shortest(preset.method)),
         None => did_you_mean(kind, known),
     };
-    format!("kind = \"{kind}\": is no kind; allowed: {allowed}{meant}")
+    let meant = if meant.is_empty() { ".".to_owned() } else { meant };
+    format!("kind = \"{kind}\": is no kind{meant} Allowed: {allowed}")
 }
 
 /// Checks that every recipe is one, and that programs and meshes are there.

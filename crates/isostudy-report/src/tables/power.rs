@@ -28,15 +28,19 @@ pub fn power_sentences(assumptions: &Assumptions, all: &[Power], participants: u
         let (judged, alone) = (at(|of| of.corrected), at(|of| of.uncorrected));
         let (over, percent) = (kind.rows[0].over.as_str(), number(100.0 * share, 0));
         let correction = if kind.rows[0].family == QUESTIONS { "Benjamini and Hochberg's" } else { "Holm's" };
+        let questions = match kind.rows[0].questions {
+            1 => String::new(),
+            many => format!(" ({many} questions)"),
+        };
         let liking = match kind.rows[0].side_bias {
             0.0 => String::new(),
-            side => format!(" who like the left side by {} logits", number(side, 1)),
+            side => format!(", liking of {} for the left side", number(side, 1)),
         };
         let mut first = over.chars();
         let over = first.next().into_iter().flat_map(char::to_uppercase).collect::<String>() + first.as_str();
         format!(
-            "{over}: {participants} people{liking} find a share of {percent} % with a probability of {judged} after {correction} correction. \
-             Uncorrected it would be {alone}."
+            "{over}{questions}{liking}: {participants} people find a share of {percent} % with probability {judged}. \
+             That is after {correction} correction; without it, the probability would be {alone}."
         )
     };
     let own = |kind: &Kind<'_>| kind.rows[0].share == share;

@@ -42,11 +42,17 @@ impl Described {
 /// If no preset has it; those that there are are named.
 pub(super) fn preset(id: &str) -> Result<Method, String> {
     let found = presets().iter().find(|preset| preset.id == id);
-    let known = || presets().iter().map(|Preset { id, .. }| *id).collect::<Vec<_>>().join(", ");
+    let known = || {
+        let chosen = presets().iter().filter(|preset| !preset.method.is_for_comparison());
+        chosen.map(|Preset { id, .. }| *id).collect::<Vec<_>>().join(", ")
+    };
     found.map(|preset| preset.method).ok_or_else(|| {
         let meant = meant(id).map_or_else(String::new, |other| format!("; did you mean {other}?"));
         match &*meant {
-            "" => format!("no method has this name; `isostudy methods` explains those that do: {}", known()),
+            "" => format!(
+                "no method has this name. Known: {}. `isostudy methods --all` explains these and others",
+                known()
+            ),
             meant => format!("no method has this name{meant} `isostudy methods` lists all"),
         }
     })
