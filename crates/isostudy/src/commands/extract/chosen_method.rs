@@ -2,7 +2,7 @@
 
 use crate::recipe::{StudyKind, no_kind};
 use isostudy_design::wording::{nearest, plainly};
-use isostudy_extract::{Method, Preset, kinds, presets};
+use isostudy_extract::{Method, kinds, presets};
 use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
 
@@ -39,20 +39,15 @@ impl Described {
 /// The method of a preset's id.
 ///
 /// # Errors
-/// If no preset has it; those that there are are named.
+/// If no preset has it, with the nearest name.
 pub(super) fn preset(id: &str) -> Result<Method, String> {
     let found = presets().iter().find(|preset| preset.id == id);
-    let known = || {
-        let chosen = presets().iter().filter(|preset| !preset.method.is_for_comparison());
-        chosen.map(|Preset { id, .. }| *id).collect::<Vec<_>>().join(", ")
-    };
     found.map(|preset| preset.method).ok_or_else(|| {
         let meant = meant(id).map_or_else(String::new, |other| format!("; did you mean {other}?"));
         match &*meant {
-            "" => format!(
-                "no method has this name. Known: {}. `isostudy methods --all` explains these and others",
-                known()
-            ),
+            "" => {
+                "no method has this name, as bi-relaxed and mc are; `isostudy methods --all` lists all".into()
+            }
             meant => format!("no method has this name{meant} `isostudy methods` lists all"),
         }
     })
