@@ -8,7 +8,7 @@ mod estimate;
 mod fronts;
 mod wants;
 
-pub use candidate::{Candidate, Each, LEAST_ERROR, ObjectCandidates, candidates};
+pub use candidate::{Candidate, Each, LEAST_ERROR, ObjectCandidates, candidates, noise};
 pub use estimate::Estimate;
 pub use fronts::{Axes, Front, FrontPoint, Standing, fronts};
 pub use wants::{Cost, Goal, Pick, Want, picks};

@@ -6,9 +6,10 @@ use crate::liking::{Liking, Top};
 use crate::mesh_set::{MeshSet, known};
 use isostudy_design::config::ObjectSection;
 use isostudy_design::record::{BenchRun, ChunkTimes, Distribution, MeshRecord, Purpose};
-use isostudy_design::{ConfigurationId, Method, MethodId, Study};
+use isostudy_design::{ConfigurationId, Method, MethodId, Stage, Study};
 use isostudy_statistics::interval::LEVEL;
 use isostudy_statistics::median;
+use isostudy_timing::NoiseFloor;
 
 /// How many standard errors a mean may be off at 95 %.
 const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
@@ -16,6 +17,9 @@ const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
 /// The least error that is told apart, in cube edges. A method that is exact but for rounding would be a million times as good as the
 /// next, and an error of 0 has no place on a logarithmic axis.
 pub const LEAST_ERROR: f64 = 1e-4;
+
+/// The logarithm of 1.05, by which runs are taken to differ where no A/A block tells.
+const UNKNOWN_NOISE: f64 = 0.048_790_164_169_432;
 
 /// An object and the methods that can be taken for it, in the study's order.
 pub struct ObjectCandidates<'a> {
@@ -117,6 +121,7 @@ impl Candidate<'_> {
 pub fn candidates<'a>(inputs: &Inputs<'a>, likings: &[Liking]) -> Vec<ObjectCandidates<'a>> {
     let study = inputs.study;
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
+    let noise = inputs.bench.map(NoiseFloor::of);
     let methods: Vec<&Method> = study.methods.iter().filter(|method| !is_repeated(study, method)).collect();
     let of_object = |(place, object): (usize, &'a ObjectSection)| {
         let liking = likings.iter().find(|of| of.object == Some(place));
@@ -128,7 +133,7 @@ pub fn candidates<'a>(inputs: &Inputs<'a>, likings: &[Liking]) -> Vec<ObjectCand
             Some(Candidate {
                 method,
                 mesh,
-                time_s: inputs.bench.and_then(|run| time(run, &id)),
+                time_s: inputs.bench.zip(noise.as_ref()).and_then(|(run, noise)| time(run, noise, &id)),
                 chunks: chunks.and_then(|times| Each::of(per_chunk(times))),
                 edits: chunks.and_then(|times| Each::of(times.edit_s.clone())),
                 memory: inputs
@@ -156,10 +161,22 @@ fn is_repeated(study: &Study, method: &Method) -> bool {
     earlier.into_iter().any(|other| other.recipe == method.recipe && other.budget == method.budget)
 }
 
-fn time(run: &BenchRun, id: &ConfigurationId) -> Option<Estimate> {
+/// The median of the run's times. What other runs may differ by is in its ends: two times of which neither interval is beyond the other
+/// may change places in another run.
+fn time(run: &BenchRun, noise: &NoiseFloor, id: &ConfigurationId) -> Option<Estimate> {
     let own = run.samples.iter().filter(|sample| sample.id == *id);
     let found = median(own.map(|sample| sample.total_s - sample.normals_s).collect(), LEVEL)?;
-    Some(Estimate::within(found.median, found.interval))
+    let half = (noise.of_stage(Stage::Total, id).unwrap_or(UNKNOWN_NOISE) / 2.0).exp();
+    let Estimate { value, low, high } = Estimate::within(found.median, found.interval);
+    Some(Estimate { value, low: low / half, high: high * half })
+}
+
+/// By how much runs of one program differ: the smallest and the largest share of a time among the run's configurations, and whether an
+/// A/A block tells it or it is assumed.
+pub fn noise(run: &BenchRun) -> ([f64; 2], bool) {
+    let known = NoiseFloor::of(run).range(Stage::Total);
+    let (low, high) = known.unwrap_or((UNKNOWN_NOISE, UNKNOWN_NOISE));
+    ([low, high].map(|log| log.exp() - 1.0), known.is_some())
 }
 
 /// Of each chunk the median of its rounds.

@@ -3,8 +3,9 @@
 use crate::wants::{busy, judged, words};
 use crate::words::{list, whole};
 use isostudy_design::MethodId;
+use isostudy_design::record::BenchRun;
 use isostudy_inference::decision::{
-    Axes, Cost, Estimate, Front, FrontPoint, Goal, LEAST_ERROR, ObjectCandidates, Pick, Standing,
+    Axes, Cost, Estimate, Front, FrontPoint, Goal, LEAST_ERROR, ObjectCandidates, Pick, Standing, noise,
 };
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::results::{Decision, Results};
@@ -23,7 +24,7 @@ pub(super) fn tables(results: &Results<'_>) -> Vec<Table> {
     let (inputs, found) = (&results.inputs, &results.decision);
     let objects = &found.objects;
     let picks = &judged(results)[..];
-    let tables = [choices(inputs, objects, picks), decision(objects, picks), standings(found)];
+    let tables = [choices(inputs, objects, picks), decision(inputs, objects, picks), standings(found)];
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
 
@@ -70,7 +71,7 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick
 }
 
 /// What one wants, what to take, why, and what it costs.
-fn decision(objects: &[ObjectCandidates<'_>], picks: &[&Pick<'_>]) -> Table {
+fn decision(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick<'_>]) -> Table {
     let on = |pick: &Pick<'_>| {
         let on: Vec<&str> = pick.on.iter().map(|best| best.object.name.as_str()).collect();
         if on.len() == objects.len() && on.len() > 1 { "every object".into() } else { list(&on) }
@@ -79,7 +80,7 @@ fn decision(objects: &[ObjectCandidates<'_>], picks: &[&Pick<'_>]) -> Table {
         .column("want", "You want", |pick| Cell::text(words(pick.want.goal).phrase))
         .column("objects", "On", |pick| Cell::text(on(pick)))
         .column("take", "Take", |pick| Cell::text(format!("{}: {}", pick.method.id, pick.method.label)))
-        .column("why", "Why", |pick| Cell::text(why(pick)))
+        .column("why", "Why", |pick| Cell::text(why(inputs.bench, pick)))
         .column("cost", "What it costs", |pick| Cell::text(cost(pick)))
         .into_table("decision", "Which method to take");
     if !picks.is_empty() {
@@ -93,7 +94,7 @@ fn decision(objects: &[ObjectCandidates<'_>], picks: &[&Pick<'_>]) -> Table {
 }
 
 /// The best's numbers, the next's, and whose interval meets it.
-fn why(pick: &Pick<'_>) -> String {
+fn why(run: Option<&BenchRun>, pick: &Pick<'_>) -> String {
     let range = |values: &mut dyn Iterator<Item = Estimate>| -> String {
         words(pick.want.goal).says.replace("{}", &ranged(&values.map(|of| of.value).collect::<Vec<_>>()))
     };
@@ -109,6 +110,9 @@ fn why(pick: &Pick<'_>) -> String {
             format!("{own}; {next}: {}", ranged(&values))
         }
     };
+    if let Some((of, _)) = run.filter(|_| pick.want.goal.is_of_times()).map(noise) {
+        text.push_str(&format!("; noise: {}", percents(of)));
+    }
     let [everywhere, somewhere] = alike(pick);
     match (everywhere.is_empty(), somewhere.is_empty()) {
         (true, true) => {}
@@ -171,6 +175,14 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
             "Time: median from the field to the mesh, without normals, over {}. ",
             measured(run)
         ));
+        let is = match noise(run) {
+            (of, true) => format!("As the A/A block tells, runs of one program differ by {}", percents(of)),
+            (of, false) => format!(
+                "No A/A block tells how much runs of one program differ, and {} is assumed",
+                percents(of)
+            ),
+        };
+        text.push_str(&format!("{is}: the interval of a time is wider by that. "));
         if run.samples.iter().any(|sample| !sample.has_stages()) {
             text.push_str("A program is given all samples, and their time is in its time. ");
         }
@@ -237,7 +249,7 @@ fn standings<'a>(found: &'a Decision<'a>) -> Table {
     table.with_note(
         "First: time in seconds, or triangles. Second: mean error in edges of the object's benchmark cubes, or worth in log-odds above the \
          mean of all methods. Intervals are at 95 %. Beaten: another method is better in one and as good in the other, beyond both intervals. \
-         Perhaps beaten: by the estimates alone. A time's interval distinguishes samples of one run, not runs.",
+         Perhaps beaten: by the estimates alone. A time's interval is wider by what runs of one program differ by.",
     )
 }
 
@@ -257,6 +269,13 @@ fn decimals(axes: Axes) -> [usize; 2] {
         Axes::TrianglesError => [0, 4],
         Axes::TimePreference => [6, 3],
     }
+}
+
+/// `0.8 to 2.1 %`, or one number where both are printed alike.
+fn percents(shares: [f64; 2]) -> String {
+    let [low, high] = shares.map(|share| number(100.0 * share, 1));
+    let [low, high] = [low, high].map(|text| text.trim_end_matches(".0").to_owned());
+    if low == high { format!("{low} %") } else { format!("{low} to {high} %") }
 }
 
 /// `0.12 to 0.67`, or one number where both are printed alike: about two digits that count.

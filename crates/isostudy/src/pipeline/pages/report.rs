@@ -126,13 +126,8 @@ struct Set<'a> {
 struct Part<'a> {
     id: &'static str,
     heading: &'static str,
-    /// What stands over its sentences where they are closed at first.
-    folded: Option<String>,
     pieces: Vec<Piece<'a>>,
 }
-
-/// Sections whose sentences say one by one what the figure and the table of all contrasts show together.
-const ONE_BY_ONE: [&str; 3] = ["holds", "depends", "open"];
 
 /// Writes `report.html`, one file that needs no other, and `report.md`, whose pictures are those in `figures/`.
 /// `overview` is shown before all else; `gallery` says whether there is an `index.html` to link to; `pictures` are of one object.
@@ -143,8 +138,7 @@ pub(in crate::pipeline) fn write(
     pictures: &[PictureData],
     gallery: bool,
 ) -> Result<()> {
-    let glance = report.sections.iter().any(|section| section.id == "contrasts");
-    let parts: Vec<Part<'_>> = report.sections.iter().map(|section| part(section, glance)).collect();
+    let parts: Vec<Part<'_>> = report.sections.iter().map(part).collect();
     let picture = |of: &PictureData| Picture {
         source: format!(
             "data:image/png;base64,{}",
@@ -181,18 +175,8 @@ pub(in crate::pipeline) fn write(
     writer.write("report.md", report.to_markdown().as_bytes())
 }
 
-fn part(section: &isostudy_report::report::Section, glance: bool) -> Part<'_> {
-    let findings = section.blocks.iter().filter(|block| matches!(block, Block::Finding(_))).count();
-    let folded = (glance && ONE_BY_ONE.contains(&section.id) && findings > 0).then(|| match findings {
-        1 => "The result in a sentence".to_owned(),
-        n => format!("The {n} results in sentences"),
-    });
-    Part {
-        id: section.id,
-        heading: section.heading,
-        folded,
-        pieces: section.blocks.iter().map(piece).collect(),
-    }
+fn part(section: &isostudy_report::report::Section) -> Part<'_> {
+    Part { id: section.id, heading: section.heading, pieces: section.blocks.iter().map(piece).collect() }
 }
 
 fn piece(block: &Block) -> Piece<'_> {

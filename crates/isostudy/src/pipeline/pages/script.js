@@ -25,15 +25,6 @@ const reveal = () => {
 };
 addEventListener("hashchange", reveal);
 reveal();
-// Paper cannot be opened: what is said in sentences is printed, whether it is open or not.
-let opened = [];
-addEventListener("beforeprint", () => {
-  opened = sections.filter((section) => section.classList.contains("sentences") && !section.open);
-  for (const section of opened) section.open = true;
-});
-addEventListener("afterprint", () => {
-  for (const section of opened) section.open = false;
-});
 // Tables can be searched and opened together; without this script nothing says so.
 const tables = sections.filter((section) => section.classList.contains("data"));
 for (const tools of document.querySelectorAll(".tools")) {
