@@ -52,14 +52,14 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "LIST", value_parser = Isovalues::parse, allow_hyphen_values = true, group = "level", requires = "volume",
         conflicts_with_all = ["study", "quality", "picture"])]
     isovalues: Option<Isovalues>,
-    /// How sample points fill space: body-centred, simple-cubic, five-tetrahedra, face-centred
-    #[arg(long, value_name = "NAME", default_value = "body-centred", value_parser = named::<Arrangement>, conflicts_with = "study")]
-    arrangement: Arrangement,
-    /// How vertices are merged: none, integrated, edge-collapse, integrated-collapse, warp; the last two arrangements have no
+    /// Marching tetrahedra, by how sample points fill space: body-centred, simple-cubic, five-tetrahedra, face-centred
+    #[arg(long, value_name = "NAME", value_parser = named::<Arrangement>, conflicts_with = "study")]
+    arrangement: Option<Arrangement>,
+    /// Marching tetrahedra, by how vertices are merged: none, integrated, edge-collapse, integrated-collapse, warp; the last two arrangements have no
     /// integrated clustering, and warp is for the first [default: integrated; edge-collapse where there is none]
     #[arg(long, value_name = "NAME", value_parser = named::<Clustering>, conflicts_with = "study")]
     clustering: Option<Clustering>,
-    /// A method by its name instead, such as bi-relaxed; `isostudy methods` lists them
+    /// A method by its name, such as bi-relaxed; `isostudy methods` lists them [default: mc33]
     #[arg(long, value_name = "ID", value_parser = chosen_method::preset, conflicts_with_all = ["study", "recipe", "arrangement", "clustering"])]
     method: Option<Method>,
     /// A method as a study file has it instead: '{ kind = "tetrahedra", arrangement = "body-centred", placement = "relaxed" }'
@@ -106,15 +106,24 @@ impl Arguments {
     }
 
     fn method(&self) -> Method {
-        self.method.or(self.recipe).unwrap_or_else(|| {
-            let clustering = self.clustering.unwrap_or(match self.arrangement {
+        let tetrahedra = || {
+            if self.arrangement.is_none() && self.clustering.is_none() {
+                return None;
+            }
+            let arrangement = self.arrangement.unwrap_or(Arrangement::BodyCentred);
+            let clustering = self.clustering.unwrap_or(match arrangement {
                 Arrangement::BodyCentred | Arrangement::SimpleCubic => Clustering::Integrated,
                 Arrangement::FiveTetrahedra | Arrangement::FaceCentred => Clustering::EdgeCollapse,
             });
-            Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(self.arrangement) })
-        })
+            Some(Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(arrangement) }))
+        };
+        let chosen = self.method.or(self.recipe).or_else(tetrahedra);
+        chosen.unwrap_or_else(|| chosen_method::preset(DEFAULT).expect("a preset"))
     }
 }
+
+/// What the documents recommend to whoever does not know: docs/methods.md.
+const DEFAULT: &str = "mc33";
 
 /// Extracts a study's meshes, or one surface.
 ///
