@@ -3,6 +3,8 @@
 
 Run `make terrain` and `isostudy bench configs/paper-terrain.toml`, `isostudy study configs/paper-terrain.toml` first, on a machine
 that does nothing else.
+
+--recommended only writes what to take, from what was published, into README.md and the pages that recommend.
 """
 import csv
 import datetime
@@ -54,7 +56,6 @@ def main():
     (TO / "made.txt").write_text(f"study: terrain\n{made}\n")
     choices = rows(TERRAIN / "tables/choices.md")
     conditions = f"Measured {made}."
-    replace(ROOT / "README.md", "choices", f"{choices}\n\n{conditions}")
     page = ROOT / "docs/terrain.md"
     replace(page, "choices", f"{choices}\n\n{conditions}")
     replace(page, "decision", rows(TERRAIN / "tables/decision.md"))
@@ -63,12 +64,21 @@ def main():
     replace(page, "work", work())
     replace(page, "claims", rows(PAPER / "tables/claims.md"))
     replace(page, "conclusions", conclusions())
-    replace(ROOT / "README.md", "take", take())
+    recommend()
 
 
-def table(name):
+# Every page that recommends has the same table.
+RECOMMEND = ["README.md", "docs/methods.md", "docs/terrain.md", "docs/engine.md"]
+
+
+def recommend():
+    for name in RECOMMEND:
+        replace(ROOT / name, "take", take("docs/" if "/" not in name else ""))
+
+
+def table(name, folder=TERRAIN / "tables"):
     """A table of the study, by id; of the quality tables what is said of the benchmark's meshes."""
-    lines = csv.DictReader((TERRAIN / f"tables/{name}.csv").open())
+    lines = csv.DictReader((folder / f"{name}.csv").open())
     return {row["id"]: row for row in lines if row.get("purpose", "benchmark") == "benchmark"}
 
 
@@ -82,68 +92,78 @@ OBJECTS = ["hi", "cl", "ca", "bu"]
 
 def ratios(name, column, method, beside="mc"):
     """Of a method to another, object by object."""
-    of = table(name)
+    of = table(name, TO)
     return [float(of[f"{o}_{method}"][column]) / float(of[f"{o}_{beside}"][column]) for o in OBJECTS]
 
 
 def errors(method):
     """Mean distance, the larger of both ways, object by object."""
-    of = table("accuracy")
+    of = table("accuracy", TO)
     rows = [of[f"{o}_{method}"] for o in OBJECTS]
     return [max(float(row["distance_mean"]), float(row["distance_to_mesh_mean"])) for row in rows]
 
 
-def take():
-    """README's first table: which method, why, and its price."""
+def take(docs):
+    """The table of recommendations: which method, why, and its price. `docs` leads to the folder of that name."""
     chunk = lambda method: range_of(ratios("chunks", "chunk_ms", method), 1)
     error = lambda method: [of / cubes for of, cubes in zip(errors(method), errors("mc"))]
     fewer = [100 * (1 - ratio) for ratio in ratios("benchmark", "triangles", "snapmc")]
-    ratio = lambda method: range_of([float(table("quality")[f"{o}_{method}"]["radius_ratio_mean"]) for o in OBJECTS], 2)
-    edge = lambda method: float(table("accuracy")[f"bu_{method}"]["sharp_edges_mean"])
-    pairs = lambda id: int(table("topology")[id]["self_intersections"])
+    ratio = lambda method: range_of([float(table("quality", TO)[f"{o}_{method}"]["radius_ratio_mean"]) for o in OBJECTS], 2)
+    edge = lambda method: float(table("accuracy", TO)[f"bu_{method}"]["sharp_edges_mean"])
+    pairs = lambda id: int(table("topology", TO)[id]["self_intersections"])
     most = max(pairs(f"{o}_bi-relaxed") for o in OBJECTS)
     mc33 = 100 * (max(ratios("chunks", "chunk_ms", "mc33")) - 1)
     more = range_of(ratios("benchmark", "triangles", "bi-relaxed"), 1)
     lines = [
         ("for", "take", "because", "its price"),
         ("---", "---", "---", "---"),
-        ("smooth terrain", "`mc`", "nothing is faster", "thin triangles"),
         (
-            "the same, and tools that go on working on the mesh",
-            "`nets-manifold`",
-            f"more regular triangles: mean radius ratio {ratio('nets-manifold')}, of `mc` {ratio('mc')}",
-            f"{chunk('nets-manifold')} times the time per chunk, and up to {max(error('nets-manifold')):.1f} times the error, of `mc`",
+            "caves, cliffs, or you do not know",
+            "`mc33`",
+            "It is a manifold with every tunnel of the interpolated samples.",
+            f"It takes up to {max(1, mc33):.0f} % more time per chunk than `mc`.",
         ),
         (
-            "cliffs and caves",
-            "`mc33`",
-            "a manifold that has every tunnel of the interpolated samples",
-            f"up to {max(1, mc33):.0f} % more time per chunk than `mc`",
+            "the shortest time",
+            "`mc`",
+            "No other method is shown to be faster on hills, cliffs and caves.",
+            f"Many triangles are thin: the mean radius ratio is {ratio('mc')}.",
+        ),
+        (
+            "meshes that you edit in other tools",
+            "`nets-manifold`",
+            f"It is a manifold of more regular triangles: the mean radius ratio is {ratio('nets-manifold')}.",
+            f"It takes {chunk('nets-manifold')} times the time per chunk, and has up to {max(error('nets-manifold')):.1f} times the error, of `mc`.",
         ),
         (
             "buildings and sharp edges",
             "`dc-in-cell`",
-            f"{edge('dc-in-cell'):.3f} cube edges of error at the sharp edges of the building's block, where `mc` has {edge('mc'):.2f}",
-            f"{chunk('dc-in-cell')} times the time per chunk; {pairs('bu_dc-in-cell'):,} pairs of triangles intersect there, {pairs('ca_dc-in-cell'):,} in the caves",
+            f"It has {edge('dc-in-cell'):.3f} cube edges of error at the sharp edges of the building's block, where `mc` has {edge('mc'):.2f}.",
+            f"It takes {chunk('dc-in-cell')} times the time per chunk of `mc`. {pairs('bu_dc-in-cell'):,} pairs of triangles intersect there, {pairs('ca_dc-in-cell'):,} in the caves.",
         ),
         (
             "near-equilateral triangles",
             "`bi-relaxed`",
-            f"mean radius ratio {ratio('bi-relaxed')}; {range_of(error('bi-relaxed'), 2)} of the error of `mc`",
-            f"{chunk('bi-relaxed')} times the time per chunk, and {more} times the triangles, of `mc`; single thin triangles, up to {most} pairs intersect",
+            f"Its mean radius ratio is {ratio('bi-relaxed')}. It has {range_of(error('bi-relaxed'), 2)} of the error of `mc`.",
+            f"It takes {chunk('bi-relaxed')} times the time per chunk, and {more} times the triangles, of `mc`. Up to {most} pairs intersect.",
         ),
         (
             "few triangles, none of them thin",
             "`snapmc`",
-            f"{range_of(fewer, 0)} % fewer than `mc`; no angle below 12.7 degrees",
-            f"{chunk('snapmc')} times the time per chunk, and up to {max(error('snapmc')):.2f} times the error, of `mc`; no manifold where sheets lie close, as in caves",
+            f"It has {range_of(fewer, 0)} % fewer than `mc`. No angle is below 12.7 degrees.",
+            f"It takes {chunk('snapmc')} times the time per chunk, and has up to {max(error('snapmc')):.2f} times the error, of `mc`. It is no manifold where sheets lie close.",
         ),
-        ("terrain that is coarse far away", "`mc` or `nets`", "[levels of detail](docs/lod.md) without cracks", "`nets` is no manifold; `dc` there for flat walls alone"),
         (
-            "the look that people chose",
-            "`si` or `bi`",
-            "integrated clustering was preferred to none and to edge collapse",
-            "seen on other objects, with the paper's six methods alone",
+            "terrain that is coarse far away",
+            "`mc` or `nets`",
+            f"Both have [levels of detail]({docs}lod.md) without cracks.",
+            "`nets` is no manifold. `mc` has thin triangles.",
+        ),
+        (
+            "the look that people like most",
+            "`si`, `bi` or `bp`",
+            "They have the highest worths, and are not shown to differ from each other.",
+            "People saw other objects, and the paper's six methods alone.",
         ),
     ]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
@@ -234,4 +254,7 @@ def chunks():
     return by_object(table("chunks"), lambda row: f"{short(row['chunk_ms'])}, {short(row['edit_ms'])}")
 
 
-main()
+if sys.argv[1:] == ["--recommended"]:
+    recommend()
+else:
+    main()

@@ -277,7 +277,7 @@ fn liked(folder: &Folder, text: &str) {
     assert!(report.contains("the look that people like most"), "{report}");
 }
 
-/// README and docs/terrain.md have the rows that were published, and no others.
+/// docs/terrain.md has the rows that were published, and no others.
 #[test]
 fn pages_say_what_was_published() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -286,16 +286,12 @@ fn pages_say_what_was_published() {
     let rows: Vec<&str> = published.lines().filter(|line| line.starts_with('|')).collect();
     assert_eq!(rows.len(), 2 + 4);
     let made = read("results/published/terrain/made.txt");
-    for page in ["README.md", "docs/terrain.md"] {
-        let text = read(page);
-        let (_, block) = text.split_once("<!-- choices -->").unwrap();
-        let (block, _) = block.split_once("<!-- end of choices -->").unwrap();
-        let said: Vec<&str> = block.lines().filter(|line| line.starts_with('|')).collect();
-        assert_eq!(said, rows, "{page}");
-        assert!(block.contains(&format!("Measured {}.", made.lines().last().unwrap())), "{page}");
-    }
-    // Whole rows of the decision; and conclusions, by what the claims say of time.
     let page = read("docs/terrain.md");
+    let block = between(&page, "choices");
+    let said: Vec<&str> = block.lines().filter(|line| line.starts_with('|')).collect();
+    assert_eq!(said, rows);
+    assert!(block.contains(&format!("Measured {}.", made.lines().last().unwrap())), "{block}");
+    // Whole rows of the decision; and conclusions, by what the claims say of time.
     for line in csv_rows("decision") {
         let cells: Vec<&str> = ["want", "objects", "take", "why", "cost"].map(|column| &*line[column]).into();
         let row = format!("| {} |", cells.join(" | "));
@@ -326,6 +322,42 @@ fn pages_say_what_was_published() {
         };
         assert_eq!(conclusion(text), want, "{text}: {}", claim["reason"]);
     }
+}
+
+/// What stands between the marks of a page.
+fn between<'t>(page: &'t str, name: &str) -> &'t str {
+    let (_, rest) = page.split_once(&format!("<!-- {name} -->")).unwrap();
+    rest.split_once(&format!("<!-- end of {name} -->")).unwrap().0
+}
+
+/// README and the pages that recommend say the same, and the command takes the same where nobody says a method.
+#[test]
+fn one_recommendation_stands_everywhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let read = |path: &str| fs::read_to_string(root.join(path)).unwrap();
+    let readme = read("README.md");
+    let recommended = between(&readme, "take");
+    for page in ["docs/methods.md", "docs/terrain.md", "docs/engine.md"] {
+        assert_eq!(between(&read(page), "take"), recommended.replace("docs/lod.md", "lod.md"), "{page}");
+    }
+    let unsure = recommended.lines().find(|line| line.contains("you do not know")).unwrap();
+    let default = unsure.split('`').nth(1).unwrap();
+    let folder = Folder::new();
+    let ball = "extract --field x^2+y^2+z^2-1 --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2 --cells 20 -o";
+    for (name, method) in [("asked.ply", vec!["--method", default]), ("default.ply", vec![])] {
+        let arguments: Vec<&str> = ball.split(' ').chain([name]).chain(method).collect();
+        folder.succeed(&arguments);
+    }
+    assert!(fs::read(folder.path("asked.ply")).unwrap() == fs::read(folder.path("default.ply")).unwrap());
+    // And engine.md has code that takes what the table says.
+    let engine = read("docs/engine.md");
+    let methods = recommended.lines().skip(3).filter_map(|line| line.split('`').nth(1));
+    for method in methods {
+        assert!(engine.contains(&format!("\"{method}\"")), "{method}");
+    }
+    // A newcomer reads README in some minutes.
+    let words = readme.split_whitespace().count();
+    assert!(words <= 1000, "{words}");
 }
 
 /// A published table of the terrain study.
