@@ -128,7 +128,7 @@ fn the_same_without_a_study() {
     assert_eq!(audit.lines().count(), 7);
     let report = std::fs::read_to_string(out.join("report.md")).unwrap();
     assert!(
-        report.contains("## Checks of the answers")
+        report.contains("## How far the answers can be relied on")
             && report.contains("Participant 7 broke a rule by answering faster than anybody can look")
     );
     std::fs::write(mapping, "shown_s = -4.0\n").unwrap();

@@ -306,8 +306,8 @@ fn answered(folder: &Study) {
     }
     let report = fs::read_to_string(folder.path("analysed/report.md")).unwrap();
     for told in [
-        "Relaxed vertices was preferred to mean placement: 72 answers against 0, none without preference.",
-        "Body-centred, integrated, relaxed was preferred to made by hand: 72 answers against 0, none without preference.",
+        "Relaxed vertices was preferred to mean placement: 72 answers against 0, none without preference; 100 %",
+        "Body-centred, integrated, relaxed was preferred to made by hand: 72 answers against 0, none without preference; 100 %",
     ] {
         assert!(report.contains(told), "{report}");
     }

@@ -66,7 +66,7 @@ impl<'a> Paper<'a> {
         blocks.extend(recomputed::failing(&self.claims));
         blocks.extend(benchmark::findings(&self.numbers, &self.claims));
         let own = |name: &&str| tables.iter().find(|table| table.name == **name).cloned();
-        blocks.extend(["claims", "benchmark_beside"].iter().filter_map(|name| own(name)).map(Block::Folded));
+        blocks.extend(["claims", "benchmark_beside"].iter().filter_map(own).map(Block::Folded));
         vec![Section { id: "published", heading: "What was published, and what is here", blocks }]
     }
 

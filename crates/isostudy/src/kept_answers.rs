@@ -32,5 +32,5 @@ pub(crate) fn waiting(study: &Study) -> Option<Waiting> {
     let mut people: Vec<&str> = given.iter().map(|given| given.participant.as_str()).collect();
     people.sort_unstable();
     people.dedup();
-    (!given.is_empty()).then(|| Waiting { answers: given.len(), people: people.len(), folder })
+    (!given.is_empty()).then_some(Waiting { answers: given.len(), people: people.len(), folder })
 }

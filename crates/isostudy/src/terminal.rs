@@ -44,7 +44,7 @@ pub(crate) fn counted(number: u64, word: &str) -> String {
 pub(crate) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let first = digits.len() % 3;
-    let rest = digits[first..].as_bytes().chunks(3).map(|group| String::from_utf8_lossy(group).into_owned());
+    let rest = digits.as_bytes()[first..].chunks(3).map(|group| String::from_utf8_lossy(group).into_owned());
     let groups: Vec<String> =
         Some(digits[..first].to_owned()).filter(|of| !of.is_empty()).into_iter().chain(rest).collect();
     groups.join(",")

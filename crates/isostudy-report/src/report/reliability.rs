@@ -2,6 +2,7 @@
 
 use super::evidence::Evidence;
 use super::names;
+use super::told::named;
 use crate::statement::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{counted, interval, list, number, p, percent};
@@ -126,7 +127,7 @@ fn one_by_one(evidence: &Evidence<'_>) -> Option<Finding> {
                 "Of the {results} that {}, {} would not hold without some one participant, the correction done anew: {}.",
                 if holding.len() == 1 { "holds" } else { "hold" },
                 fragile.len(),
-                list(&fragile)
+                named(&fragile)
             ),
         ),
     })

@@ -11,6 +11,9 @@ use isostudy_inference::hypotheses::Target;
 use isostudy_inference::prediction::MetricPrediction;
 use isostudy_inference::{Preferences, Results};
 
+/// Contrasts over all answers that are not named one by one.
+const MANY: usize = 12;
+
 /// Names in one sentence at most; the tables have all.
 const NAMED: usize = 6;
 
@@ -20,17 +23,14 @@ pub(crate) fn sentences(preferences: &Preferences<'_>, results: Option<&Results<
         return Vec::new();
     }
     let told = Told { preferences, results };
-    let parts = [
-        told.contrasts(),
-        told.objects(),
-        told.scale(),
-        told.most_liked(),
-        told.side(),
-        told.spread(),
-        told.screening(),
-        told.prediction(),
-    ];
-    parts.into_iter().flatten().collect()
+    // Of many pairs the scale tells more than the first few.
+    let (pairs, objects, scale, liked) = (told.contrasts(), told.objects(), told.scale(), told.most_liked());
+    let first = match told.whole().len() > MANY {
+        true => [liked, scale, pairs, objects],
+        false => [pairs, objects, scale, liked],
+    };
+    let rest = [told.side(), told.spread(), told.screening(), told.prediction()];
+    first.into_iter().chain(rest).flatten().collect()
 }
 
 struct Told<'a, 'b> {
@@ -45,6 +45,13 @@ impl Told<'_, '_> {
 
     fn all(&self) -> &[Conclusion] {
         &self.conclusions().all
+    }
+
+    /// The contrasts over all answers.
+    fn whole(&self) -> Vec<(&Row, &Verdict)> {
+        let whole =
+            self.preferences.concluded().into_iter().filter(|(row, _)| row.is_whole && !row.is_difference);
+        whole.map(|(row, of)| (row, &of.verdict)).collect()
     }
 
     /// The contrasts over all answers: those that hold, those that are equal, or that there are none.
@@ -70,6 +77,9 @@ impl Told<'_, '_> {
             ),
             0 if !equal.is_empty() => String::new(),
             0 => "No preference over all answers was shown.".into(),
+            held if own.len() > MANY => {
+                format!("Asked about two at a time, people preferred one in {held} of {} pairs.", own.len())
+            }
             _ => in_sentences("People", &holding),
         };
         if !equal.is_empty() {
