@@ -171,6 +171,11 @@ fn relabel<'a>(
     renamed
 }
 
+/// The group with the most answers: of equal ones the one with the most items.
+pub(crate) fn widest(groups: &[BallotGroup]) -> Option<&BallotGroup> {
+    groups.iter().max_by_key(|of| (of.ballots.len(), of.items.len()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,7 @@
 //! The spread between people, from answers that they gave: for planning whom to ask next.
 
 use crate::answered::Answered;
+use crate::ballots::widest;
 use isostudy_design::Study;
 use isostudy_responses::Responses;
 use isostudy_statistics::{FitError, Heterogeneity, Participants, heterogeneity};
@@ -20,8 +21,7 @@ pub struct Spread {
 /// As [`heterogeneity`]; [`FitError::Nothing`] where nobody answered a comparison.
 pub fn spread_between_people(study: &Study, responses: Responses) -> Result<Spread, FitError> {
     let answered = Answered::of(study, responses).ok_or(FitError::Nothing)?;
-    let widest = answered.groups.iter().max_by_key(|of| (of.ballots.len(), of.items.len()));
-    let group = widest.ok_or(FitError::Nothing)?;
+    let group = widest(&answered.groups).ok_or(FitError::Nothing)?;
     let participants = Participants::of(group.items.len(), &group.ballots);
     Ok(Spread { of: heterogeneity(&participants)?, people: participants.number() })
 }

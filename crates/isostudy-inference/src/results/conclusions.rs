@@ -3,13 +3,14 @@
 //! The abstract, the report's sections, the tables' verdicts, what both pages show first and the last lines of `analyse` render these.
 //! A verdict stands on the test of that very thing, so no rendering can say what another denies.
 
+use crate::audit;
+use crate::ballots::widest;
 use crate::decision::{Goal, Pick};
 use crate::glance::Row;
 use crate::hypotheses::{self, Conclusion as Tested, Hypothesis};
 use crate::liking::{self, Liking, Order, Top};
 use crate::prediction::Prediction;
 use crate::results::Preferences;
-use crate::{BallotGroup, audit};
 use isostudy_design::contrast::Over;
 use isostudy_statistics::{Difference, FitError, Heterogeneity, Participants, heterogeneity};
 
@@ -296,10 +297,9 @@ fn top(preferences: &Preferences<'_>, place: usize, level: f64, limits: &[Limit]
     Some(Conclusion { about: About::Top(place), verdict, limits: limits.to_vec() })
 }
 
-/// Of the group with the most answers: of equal ones the one with the most items.
+/// Of the group with the most answers.
 fn spread(preferences: &Preferences<'_>) -> Option<Spread> {
-    let size = |of: &&BallotGroup| (of.ballots.len(), of.items.len());
-    let group = preferences.groups.iter().max_by_key(size)?;
+    let group = widest(preferences.groups)?;
     let of = heterogeneity(&Participants::of(group.items.len(), &group.ballots)).ok()?;
     let own = preferences.scales.iter().find(|scale| scale.group.name == group.name);
     let differences = own.and_then(|own| own.scale.as_ref().ok()).into_iter().flat_map(|of| &of.differences);
