@@ -246,7 +246,7 @@ fn another_study_works_as_well() {
     assert!(!tables.iter().any(|table| ["comparison", "claims", "asteroid"].contains(&table.name.as_str())));
     assert_eq!(named(&tables, "benchmark").rows.len(), 4);
     assert!(tables.iter().all(|table| !table.rows.is_empty()));
-    assert_eq!(isostudy_report::figures(&Results::of(&inputs)).unwrap().len(), 14);
+    assert_eq!(isostudy_report::figures(&Results::of(&inputs)).unwrap().len(), 15);
 }
 
 #[test]
