@@ -5,17 +5,18 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 FROM=${1:-results/paper}
 TO=results/published
-TABLES="contrasts preference_groups preference_overall preference_margins tests claims comparison_summary benchmark quality topology accuracy prediction"
+TABLES="contrasts fronts preference_groups preference_overall preference_margins tests claims comparison_summary benchmark quality topology accuracy prediction"
 FIGURES="contrasts preference_overall prediction radius_ratio triangles pass_times"
 TURNTABLE=as_si
 
 [ -f "$FROM/manifest.json" ] || { echo "$FROM: has no manifest; run isostudy study configs/paper.toml" >&2; exit 2; }
+python3 -c 'import PIL' || { echo "install Pillow first: pip install pillow" >&2; exit 2; }
 find "$TO" -mindepth 1 -maxdepth 1 ! -name terrain -exec rm -r {} +
 mkdir -p "$TO/tables" "$TO/figures"
 for name in $TABLES; do cp "$FROM/tables/$name.csv" "$TO/tables/"; done
 for name in $FIGURES; do cp "$FROM/figures/$name.svg" "$TO/figures/"; done
 # Up to the results one by one.
-awk '/^## What holds/ { exit } { print }' "$FROM/report.md" >"$TO/report.md"
+awk '/^## How much each is liked/ { exit } { print }' "$FROM/report.md" >"$TO/report.md"
 gif=$(awk -F, -v id="$TURNTABLE" '$3 == id && $2 == "" { print $1 }' "$FROM/key/stimuli.csv")
 # At half its size and every other frame: the whole would be larger than all the rest.
 python3 - "$FROM/$gif" "$TO/turntable_$TURNTABLE.gif" <<'PY'
