@@ -215,6 +215,18 @@ fn the_small_terrain_study_answers_from_its_own_numbers() {
         );
         assert!(number(row, "chunk_ms").unwrap() > 0.0 && number(row, "edit_ms").unwrap() > 0.0);
     }
+    // From stored samples, the same chunks and edits; what lies between the samples is asked for by some.
+    let stored = rows(&out, "stored");
+    assert_eq!(stored.len(), 8 * objects.len());
+    for row in &stored {
+        let method = row["id"].split_once('_').unwrap().1;
+        let asks =
+            if ["bi", "bi-relaxed", "dc-in-cell"].contains(&method) { "values between" } else { "samples" };
+        assert_eq!(row["asks_for"], asks, "{method}");
+        for column in ["whole_ms", "chunk_ms", "edit_ms"] {
+            assert!(number(row, column).unwrap() > 0.0, "{method}: {column}");
+        }
+    }
     // All methods are asked the same edits.
     let edits = |id: &str| {
         let text = fs::read_to_string(out.join(format!("bench/chunks/{id}.json"))).unwrap();

@@ -171,6 +171,9 @@ pub struct BenchmarkSection {
     /// Cells along a side of the chunks that are timed one by one; 0 times none.
     #[serde(default, deserialize_with = "whole")]
     pub chunks: u32,
+    /// Whether every method is timed once more from stored samples: whole, and chunk by chunk where `chunks` asks for that.
+    #[serde(default)]
+    pub stored: bool,
     /// Whether the short plan measures peak memory too, as the full one does.
     #[serde(default)]
     pub memory: bool,

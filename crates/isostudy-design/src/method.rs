@@ -92,6 +92,8 @@ pub struct Method {
     pub budget: Option<BudgetSection>,
     /// How its meshes look in animations; `None` as all do.
     pub look: Option<StimulusLook>,
+    /// Why no choice names it; `None` of those that are compared.
+    pub apart: Option<String>,
     /// For each declared factor of the study, by place, the level that the method is an example of, by place.
     pub levels: Vec<Option<usize>>,
 }

@@ -280,6 +280,24 @@ pub struct SweepMesh {
     pub published_aspect_ratio_mean: f64,
 }
 
+/// What a configuration costs where the object's samples are stored: those at the corners of its cubes, the same for all methods. On
+/// one thread, from the samples to the mesh; what a program takes to read them is not in it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StoredTimes {
+    /// Which configuration, at the benchmark spacing.
+    pub id: ConfigurationId,
+    /// Whether the method asks for values or gradients between the samples, which are interpolated in the time measured.
+    pub is_between: bool,
+    /// Seconds for the whole mesh without its normals, round by round.
+    pub whole_s: Vec<f64>,
+    /// Chunks that are timed, as in [`ChunkTimes`]; 0 where none are.
+    pub timed: u64,
+    /// Seconds per extraction of such a chunk, round by round.
+    pub chunk_s: Vec<f64>,
+    /// Seconds to extract again what each edit touches, as in [`ChunkTimes`].
+    pub edit_s: Vec<f64>,
+}
+
 /// What a configuration costs chunk by chunk, on one thread, from the field: terrain as a game keeps it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ChunkTimes {

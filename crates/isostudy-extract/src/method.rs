@@ -14,7 +14,7 @@ use crate::cubes::cells_otherwise;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
 use crate::lattice::{Arrangement, Border, BoxGrid, CellBox, Lattice, LatticeError};
-use crate::settings::Execution;
+use crate::settings::{Execution, Positions};
 use crate::source::Source;
 use crate::wording::in_words;
 use isostudy_field::StudyField;
@@ -192,6 +192,21 @@ impl Method {
     pub fn is_of_cubes(&self) -> bool {
         let family = self.family();
         family.way().is_some() && !family.calls_the_field_always()
+    }
+
+    /// Whether the samples at the corners of a grid's cells are all that the method asks for: then
+    /// [`Source::Samples`](crate::Source::Samples) of them makes its mesh. Otherwise it asks for values elsewhere, or for gradients.
+    pub fn is_of_corners(&self) -> bool {
+        let family = self.family();
+        let has_only_corners = match family.arrangement() {
+            Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => true,
+            Arrangement::BodyCentred | Arrangement::FaceCentred => false,
+        };
+        let settings = family.settings(0.0);
+        has_only_corners
+            && settings.positions == Positions::Indexed
+            && !family.calls_the_field_always()
+            && crate::placement::check(&settings, false).is_ok()
     }
 
     /// The samples at the corners of a grid's cells, where the method takes them; `None` if its sample points are others.

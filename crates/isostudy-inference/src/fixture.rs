@@ -57,6 +57,7 @@ impl Everything {
             meshes: &self.meshes,
             bench: Some(&self.bench),
             chunks: &[],
+            stored: &[],
             answers: Some(&self.answers),
             left_out: &[],
         }

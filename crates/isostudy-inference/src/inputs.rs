@@ -1,7 +1,7 @@
 //! What tables and figures are made from.
 
 use crate::answered::Answered;
-use isostudy_design::record::{BenchRun, ChunkTimes, MeshRecord};
+use isostudy_design::record::{BenchRun, ChunkTimes, MeshRecord, StoredTimes};
 use isostudy_design::{ConfigurationId, Study};
 
 /// What tables and figures are made from. Absent or empty parts leave out what depends on them.
@@ -15,6 +15,8 @@ pub struct Inputs<'a> {
     pub bench: Option<&'a BenchRun>,
     /// Times chunk by chunk, of what was timed so.
     pub chunks: &'a [ChunkTimes],
+    /// Times from stored samples, of what was timed so.
+    pub stored: &'a [StoredTimes],
     /// The answers to this study's comparisons.
     pub answers: Option<&'a Answered>,
     /// What has no mesh or no times because its program failed, and why.

@@ -107,7 +107,15 @@ struct Printed {
 fn printed(study: &Study, meshes: &[MeshRecord], given: &[Given]) -> Printed {
     let read = Route::Long.read(study, &Plan::of_study(study), given).expect("a file that is right");
     let answered = Answered::of(study, read).expect("answers to the study's questions");
-    let inputs = Inputs { study, meshes, bench: None, chunks: &[], answers: Some(&answered), left_out: &[] };
+    let inputs = Inputs {
+        study,
+        meshes,
+        bench: None,
+        chunks: &[],
+        stored: &[],
+        answers: Some(&answered),
+        left_out: &[],
+    };
     let results = Results::of(&inputs);
     let tables = tables(&results);
     let report = report(&results, &tables, &[], Vec::new());

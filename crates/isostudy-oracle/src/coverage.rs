@@ -147,6 +147,7 @@ fn printed(
             meshes,
             bench: None,
             chunks: &[],
+            stored: &[],
             answers: Some(&answered),
             left_out: &[],
         })),

@@ -96,8 +96,15 @@ impl Made {
     pub(super) fn of(study: &Study, answers: Responses) -> Option<Self> {
         let people = people(&answers);
         let answered = Answered::of(study, answers)?;
-        let inputs =
-            Inputs { study, meshes: &[], bench: None, chunks: &[], answers: Some(&answered), left_out: &[] };
+        let inputs = Inputs {
+            study,
+            meshes: &[],
+            bench: None,
+            chunks: &[],
+            stored: &[],
+            answers: Some(&answered),
+            left_out: &[],
+        };
         let results = Results::of(&inputs);
         let tables = tables(&results);
         let report = report(&results, &tables, &[], Paper::of(&results).published(&tables));

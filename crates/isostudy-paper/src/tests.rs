@@ -214,8 +214,15 @@ fn absent_parts_leave_out_their_tables() {
     let all = Everything::of(fixture::study());
     let names =
         |inputs: &Inputs<'_>| -> Vec<String> { tables(inputs).into_iter().map(|table| table.name).collect() };
-    let nothing =
-        Inputs { study: &all.study, meshes: &[], bench: None, chunks: &[], answers: None, left_out: &[] };
+    let nothing = Inputs {
+        study: &all.study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        stored: &[],
+        answers: None,
+        left_out: &[],
+    };
     assert_eq!(names(&nothing), ["methods", "configurations", "questionnaire", "claims"]);
     let answers_only = Inputs { answers: Some(&all.answers), ..nothing };
     assert!(names(&answers_only).contains(&"preference_overall".to_owned()));
@@ -237,6 +244,7 @@ fn another_study_works_as_well() {
         meshes: &meshes,
         bench: Some(&bench),
         chunks: &[],
+        stored: &[],
         answers: Some(&answers),
         left_out: &[],
     };

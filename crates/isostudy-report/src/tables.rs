@@ -19,6 +19,7 @@ pub(crate) mod preferences;
 pub(crate) mod scale;
 pub(crate) mod screened;
 pub(crate) mod screens;
+mod stored;
 
 use isostudy_inference::{Preferences, Results};
 use isostudy_table::Table;
@@ -31,6 +32,7 @@ pub fn tables(results: &Results<'_>) -> Vec<Table> {
     tables.extend(design::left_out(inputs));
     tables.extend(benchmark::benchmark(inputs));
     tables.extend(chunks::chunks(inputs));
+    tables.extend(stored::stored(inputs));
     tables.extend(design::questionnaire(inputs.study));
     if let Some((answers, preferences)) = inputs.answers.zip(results.preferences.as_ref()) {
         tables.extend(answers::answers(inputs.study, &answers.responses, &answers.excluded));

@@ -51,6 +51,27 @@ pub(crate) fn words(goal: Goal) -> Words {
         Goal::Fastest => ["fastest", "shortest time", "{} ms", "the shortest time", "{} ms"],
         Goal::Chunk => ["chunk", "shortest chunk", "{} ms", "the shortest time for a chunk", "{} ms"],
         Goal::Edit => ["edit", "shortest edit", "{} ms", "the shortest time for an edit, in chunks", "{} ms"],
+        Goal::StoredFastest => [
+            "stored",
+            "shortest time from stored samples",
+            "{} ms",
+            "the shortest time from stored samples",
+            "{} ms",
+        ],
+        Goal::StoredChunk => [
+            "stored_chunk",
+            "shortest chunk from stored samples",
+            "{} ms",
+            "the shortest time for a chunk from stored samples",
+            "{} ms",
+        ],
+        Goal::StoredEdit => [
+            "stored_edit",
+            "shortest edit from stored samples",
+            "{} ms",
+            "the shortest time for an edit from stored samples",
+            "{} ms",
+        ],
         Goal::Closest => ["closest", "smallest mean error", "{}", "the smallest mean error", "{} cube edges"],
         Goal::ClosestPerTriangle => [
             "closest_per_triangle",

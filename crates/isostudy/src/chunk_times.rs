@@ -25,57 +25,20 @@ const EDIT_ROUNDS: usize = 3;
 /// If the chunks cannot be extracted, or do not fit together.
 pub(crate) fn chunk_times(prepared: &Prepared<'_>, cells: u32, rounds: u32) -> Result<Option<ChunkTimes>> {
     let Some(of) = prepared.extractor() else { return Ok(None) };
-    let settings = ChunkSettings::default().with_isovalue(of.isovalue);
-    let mut extractor = match ChunkExtractor::in_box(&of.grid, &of.method, &settings) {
-        Ok(extractor) => extractor,
-        Err(ChunkError::Method | ChunkError::Accumulated | ChunkError::Placement { .. }) => return Ok(None),
-        Err(error) => return Err(error.into()),
-    };
     let mut kept = FieldCache::default();
     let field = of.field.prepared(&mut kept).unwrap_or(of.field);
-    let boxes: Vec<CellBox> = extractor.grid(cells).collect();
-    let mut again = |chunk: &mut Chunk, cells: CellBox| -> Result<f64> {
-        let start = Instant::now();
-        extractor.extract_into(Source::Study(field), cells, Control::default(), chunk)?;
-        Ok(start.elapsed().as_secs_f64())
-    };
-    let mut chunks: Vec<Chunk> = boxes.iter().map(|_| Chunk::default()).collect();
-    // The first time makes the buffers.
-    for (chunk, &cells) in chunks.iter_mut().zip(&boxes) {
-        again(chunk, cells)?;
-    }
-    let is_whole = |of: &CellBox| (0..3).all(|axis| of.end[axis] - of.start[axis] == cells as i32);
-    let timed: Vec<usize> =
-        (0..boxes.len()).filter(|&i| is_whole(&boxes[i]) && !chunks[i].triangles.is_empty()).collect();
-    let mut chunk_s = Vec::new();
-    for _ in 0..rounds {
-        for &i in &timed {
-            chunk_s.push(again(&mut chunks[i], boxes[i])?);
-        }
-    }
+    let Some(mut work) = Chunks::begin(&of, Source::Study(field), cells)? else { return Ok(None) };
+    let chunk_s = work.each(rounds)?;
     let whole = of.extract(&Execution { threads: 1 })?.mesh;
-    let (mut edit_chunks, mut edit_s) = (Vec::new(), Vec::new());
-    for at in places(&of)? {
-        let changed = Aabb::around(at.to_array(), REACH * of.grid.spacing);
-        let touched: Vec<usize> = (0..boxes.len()).filter(|&i| chunks[i].is_touched_by(changed)).collect();
-        let mut rounds = [0.0; EDIT_ROUNDS];
-        for seconds in &mut rounds {
-            for &i in &touched {
-                *seconds += again(&mut chunks[i], boxes[i])?;
-            }
-        }
-        rounds.sort_unstable_by(f64::total_cmp);
-        edit_chunks.push(touched.len() as u64);
-        edit_s.push(rounds[EDIT_ROUNDS / 2]);
-    }
-    let welded = weld_chunks(&chunks).with_context(|| format!("{}: its chunks", prepared.id))?;
+    let (edit_chunks, edit_s) = work.edits(&places(&of)?)?;
+    let welded = weld_chunks(&work.chunks).with_context(|| format!("{}: its chunks", prepared.id))?;
     let [open, of_whole] =
         [&welded, &whole].map(|mesh| isostudy_mesh::topology::topology(mesh).boundary_edges as i64);
     Ok(Some(ChunkTimes {
         id: prepared.id.clone(),
         cells,
-        chunks: boxes.len() as u64,
-        timed: timed.len() as u64,
+        chunks: work.boxes.len() as u64,
+        timed: work.timed.len() as u64,
         chunk_s,
         edit_chunks,
         edit_s,
@@ -84,8 +47,90 @@ pub(crate) fn chunk_times(prepared: &Prepared<'_>, cells: u32, rounds: u32) -> R
     }))
 }
 
+/// The chunks of a configuration, extracted once, to be timed.
+pub(crate) struct Chunks<'a> {
+    extractor: ChunkExtractor,
+    source: Source<'a>,
+    spacing: f32,
+    boxes: Vec<CellBox>,
+    chunks: Vec<Chunk>,
+    /// Those of all cells that have triangles.
+    pub(crate) timed: Vec<usize>,
+}
+
+impl<'a> Chunks<'a> {
+    /// Extracts every chunk of so many cells a side, which makes the buffers. `None` for a method that makes no chunks.
+    ///
+    /// # Errors
+    /// If a chunk cannot be extracted.
+    pub(crate) fn begin(
+        of: &isostudy_bench::Prepared<'_>,
+        source: Source<'a>,
+        cells: u32,
+    ) -> Result<Option<Self>> {
+        let settings = ChunkSettings::default().with_isovalue(of.isovalue);
+        let extractor = match ChunkExtractor::in_box(&of.grid, &of.method, &settings) {
+            Ok(extractor) => extractor,
+            Err(ChunkError::Method | ChunkError::Accumulated | ChunkError::Placement { .. }) => {
+                return Ok(None);
+            }
+            Err(error) => return Err(error.into()),
+        };
+        let boxes: Vec<CellBox> = extractor.grid(cells).collect();
+        let chunks = boxes.iter().map(|_| Chunk::default()).collect();
+        let spacing = of.grid.spacing;
+        let mut work = Self { extractor, source, spacing, boxes, chunks, timed: Vec::new() };
+        for i in 0..work.boxes.len() {
+            work.again(i)?;
+        }
+        let is_whole = |of: &CellBox| (0..3).all(|axis| of.end[axis] - of.start[axis] == cells as i32);
+        let timed = |&i: &usize| is_whole(&work.boxes[i]) && !work.chunks[i].triangles.is_empty();
+        work.timed = (0..work.boxes.len()).filter(timed).collect();
+        Ok(Some(work))
+    }
+
+    /// Seconds to extract a chunk again.
+    fn again(&mut self, i: usize) -> Result<f64> {
+        let start = Instant::now();
+        self.extractor.extract_into(self.source, self.boxes[i], Control::default(), &mut self.chunks[i])?;
+        Ok(start.elapsed().as_secs_f64())
+    }
+
+    /// Seconds for each chunk that is timed, round by round.
+    ///
+    /// # Errors
+    /// If a chunk cannot be extracted.
+    pub(crate) fn each(&mut self, rounds: u32) -> Result<Vec<f64>> {
+        let all = (0..rounds).flat_map(|_| self.timed.clone()).collect::<Vec<_>>();
+        all.into_iter().map(|i| self.again(i)).collect()
+    }
+
+    /// For an edit at each of the places, how many chunks it touches, and the seconds to extract these again.
+    ///
+    /// # Errors
+    /// If a chunk cannot be extracted.
+    pub(crate) fn edits(&mut self, places: &[Vec3]) -> Result<(Vec<u64>, Vec<f64>)> {
+        let (mut edit_chunks, mut edit_s) = (Vec::new(), Vec::new());
+        for at in places {
+            let changed = Aabb::around(at.to_array(), REACH * self.spacing);
+            let touched: Vec<usize> =
+                (0..self.boxes.len()).filter(|&i| self.chunks[i].is_touched_by(changed)).collect();
+            let mut rounds = [0.0; EDIT_ROUNDS];
+            for seconds in &mut rounds {
+                for &i in &touched {
+                    *seconds += self.again(i)?;
+                }
+            }
+            rounds.sort_unstable_by(f64::total_cmp);
+            edit_chunks.push(touched.len() as u64);
+            edit_s.push(rounds[EDIT_ROUNDS / 2]);
+        }
+        Ok((edit_chunks, edit_s))
+    }
+}
+
 /// Where edits are: the same for every method with these cubes.
-fn places(of: &isostudy_bench::Prepared<'_>) -> Result<Vec<Vec3>> {
+pub(crate) fn places(of: &isostudy_bench::Prepared<'_>) -> Result<Vec<Vec3>> {
     let preset = presets().iter().find(|preset| preset.id == "mc").context("marching cubes are a preset")?;
     let cubes = isostudy_bench::Prepared {
         field: of.field,

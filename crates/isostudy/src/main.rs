@@ -34,6 +34,7 @@ mod seeds;
 mod source;
 mod source_digests;
 mod store;
+mod stored_times;
 mod study_key;
 mod trilinear_truth;
 mod video;

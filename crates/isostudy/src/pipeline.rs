@@ -14,7 +14,6 @@
 mod ab;
 mod budgets;
 mod bundle;
-mod chunks;
 mod formats;
 mod meshes;
 mod pages;
@@ -22,6 +21,7 @@ mod pictures;
 mod stimuli;
 mod sweep;
 mod tables;
+mod times_apart;
 mod timings;
 mod viewer;
 mod web;
@@ -93,9 +93,11 @@ impl<'a> Pipeline<'a> {
         let shown = self.shown_first(&meshes)?;
         let pictures = self.pictures(&turntables, &shown)?;
         let chunks = self.chunk_times()?;
-        let tables = self.tables(&meshes, &timings, &chunks, &pictures, &shown)?;
+        let stored = self.stored_times()?;
+        let tables = self.tables(&meshes, &timings, [&chunks, &stored], &pictures, &shown)?;
         let viewer = self.viewer(&meshes, &shown)?;
-        let made = [turntables, pairs, forms, stills, pictures, chunks, vec![timings, tables]].concat();
+        let made =
+            [turntables, pairs, forms, stills, pictures, chunks, stored, vec![timings, tables]].concat();
         self.page(&meshes, &made, viewer, &shown)?;
         self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
         self.unexplained()

@@ -23,6 +23,9 @@ pub struct MethodSection {
     /// How its meshes look in animations; as all do unless given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub look: Option<StimulusLook>,
+    /// Why no choice names it, as that it is given less than the others; it stands in tables, figures and questions all the same.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub apart: Option<String>,
 }
 
 /// What some methods of a study differ in.

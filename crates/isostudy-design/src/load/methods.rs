@@ -111,6 +111,7 @@ fn listed(c: &Checker<'_>, file: &StudyFile) -> Result<(Vec<FactorSpec>, Vec<Met
             recipe: section.recipe.clone(),
             budget: section.budget,
             look: section.look,
+            apart: section.apart.clone(),
             levels,
         });
     }

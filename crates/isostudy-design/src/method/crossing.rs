@@ -229,6 +229,7 @@ pub(crate) fn expand(
                 recipe: crossed.recipe(section),
                 budget: None,
                 look: None,
+                apart: None,
                 levels: vec![Some(a), Some(c)],
             });
         }

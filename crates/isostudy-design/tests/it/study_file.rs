@@ -268,6 +268,7 @@ fn full_study() -> StudyFile {
         levels: [(text(), text())].into(),
         budget: Some(budget),
         look: Some(StimulusLook::Flat),
+        apart: Some(text()),
     };
     let bi = "bi".parse().unwrap();
     StudyFile {
@@ -329,6 +330,7 @@ fn full_study() -> StudyFile {
             pin: true,
             threads: 1,
             chunks: 1,
+            stored: true,
             memory: true,
             target: text(),
             sweep: Some(SweepSection {

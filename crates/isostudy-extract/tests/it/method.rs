@@ -319,3 +319,32 @@ fn supported(arrangement: Arrangement) -> usize {
         Arrangement::FiveTetrahedra | Arrangement::FaceCentred => 2,
     }
 }
+
+/// What says that corners suffice takes them and makes the mesh of the field; what does not is refused them.
+#[test]
+fn corners_suffice_for_the_methods_that_say_so() {
+    let field = Sphere { radius: 0.8 };
+    let cubes = presets().iter().find(|preset| preset.id == "mc").unwrap().method;
+    let samples = cubes.corner_samples(&field, &GRID).unwrap().unwrap().values;
+    let mut of_corners = Vec::new();
+    for preset in presets() {
+        let extract =
+            |source: Source<'_>| preset.method.extract(&mut Extractor::new(), source, &GRID, 0.0, &ONE);
+        let from_samples = extract(Source::Samples(&samples));
+        if preset.method.is_of_corners() {
+            of_corners.push(preset.id);
+            let (from_field, from_samples) =
+                (extract((&field as &dyn StudyField).into()).unwrap(), from_samples.unwrap());
+            assert!(!from_field.mesh.triangles.is_empty());
+            assert_same(&from_field.mesh, &from_samples.mesh, preset.id);
+        } else {
+            assert!(from_samples.is_err(), "{} takes corners", preset.id);
+        }
+    }
+    for id in ["mc", "mc33", "mc-edge-groups", "snapmc", "nets", "nets-manifold", "si"] {
+        assert!(of_corners.contains(&id), "{id}: {of_corners:?}");
+    }
+    for id in ["bi", "bi-relaxed", "dc", "dc-in-cell"] {
+        assert!(!of_corners.contains(&id), "{id}");
+    }
+}

@@ -5,7 +5,7 @@ use crate::inputs::Inputs;
 use crate::liking::{Liking, Top};
 use crate::mesh_set::{MeshSet, known};
 use isostudy_design::config::ObjectSection;
-use isostudy_design::record::{BenchRun, ChunkTimes, Distribution, MeshRecord, Purpose};
+use isostudy_design::record::{BenchRun, Distribution, MeshRecord, Purpose, StoredTimes};
 use isostudy_design::{ConfigurationId, Method, MethodId, Stage, Study};
 use isostudy_statistics::interval::LEVEL;
 use isostudy_statistics::median;
@@ -43,6 +43,8 @@ pub struct Candidate<'a> {
     pub chunks: Option<Each>,
     /// Seconds to extract again what each edit touches.
     pub edits: Option<Each>,
+    /// Times from stored samples.
+    pub stored: Option<Stored>,
     /// Bytes that extraction takes beside the field.
     pub memory: Option<u64>,
     /// Mean distance from the mesh to the isosurface or back, whichever is larger, in edges of the object's benchmark cubes: one
@@ -52,6 +54,27 @@ pub struct Candidate<'a> {
     pub sharp_edges: Option<Estimate>,
     /// Its log worth on this object less the mean of all methods', in log-odds: see [`Liking`].
     pub preference: Option<Estimate>,
+}
+
+/// Times from samples that are stored.
+pub struct Stored {
+    /// Median seconds to the mesh, normals left out.
+    pub whole_s: Option<Estimate>,
+    /// Seconds to extract each chunk.
+    pub chunks: Option<Each>,
+    /// Seconds to extract again what each edit touches.
+    pub edits: Option<Each>,
+}
+
+impl Stored {
+    fn of(times: &StoredTimes, noise: Option<f64>) -> Self {
+        let whole = median(times.whole_s.clone(), LEVEL);
+        Self {
+            whole_s: whole.map(|of| beyond_noise(Estimate::within(of.median, of.interval), noise)),
+            chunks: Each::of(per_chunk(times.timed, &times.chunk_s)),
+            edits: Each::of(times.edit_s.clone()),
+        }
+    }
 }
 
 /// Times of the same pieces of work, one after the other, and their median.
@@ -117,12 +140,14 @@ impl Candidate<'_> {
     }
 }
 
-/// The candidates of every object that has any. A method that differs from an earlier one in its look alone is none.
+/// The candidates of every object that has any. A method that differs from an earlier one in its look alone is none, nor is one that
+/// the study sets apart.
 pub fn candidates<'a>(inputs: &Inputs<'a>, likings: &[Liking]) -> Vec<ObjectCandidates<'a>> {
     let study = inputs.study;
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
     let noise = inputs.bench.map(NoiseFloor::of);
-    let methods: Vec<&Method> = study.methods.iter().filter(|method| !is_repeated(study, method)).collect();
+    let is_compared = |method: &&Method| method.apart.is_none() && !is_repeated(study, method);
+    let methods: Vec<&Method> = study.methods.iter().filter(is_compared).collect();
     let of_object = |(place, object): (usize, &'a ObjectSection)| {
         let liking = likings.iter().find(|of| of.object == Some(place));
         let candidate = |method: &&'a Method| {
@@ -130,12 +155,14 @@ pub fn candidates<'a>(inputs: &Inputs<'a>, likings: &[Liking]) -> Vec<ObjectCand
             let unit = object.benchmark_spacing;
             let id = ConfigurationId { object: object.id.clone(), method: method.id };
             let chunks = inputs.chunks.iter().find(|times| times.id == id);
+            let stored = inputs.stored.iter().find(|times| times.id == id);
             Some(Candidate {
                 method,
                 mesh,
                 time_s: inputs.bench.zip(noise.as_ref()).and_then(|(run, noise)| time(run, noise, &id)),
-                chunks: chunks.and_then(|times| Each::of(per_chunk(times))),
+                chunks: chunks.and_then(|times| Each::of(per_chunk(times.timed, &times.chunk_s))),
                 edits: chunks.and_then(|times| Each::of(times.edit_s.clone())),
+                stored: stored.map(|times| Stored::of(times, of_total(noise.as_ref(), &id))),
                 memory: inputs
                     .bench
                     .and_then(|run| run.memory.iter().find(|peak| peak.id == id)?.of_extraction()),
@@ -166,9 +193,19 @@ fn is_repeated(study: &Study, method: &Method) -> bool {
 fn time(run: &BenchRun, noise: &NoiseFloor, id: &ConfigurationId) -> Option<Estimate> {
     let own = run.samples.iter().filter(|sample| sample.id == *id);
     let found = median(own.map(|sample| sample.total_s - sample.normals_s).collect(), LEVEL)?;
-    let half = (noise.of_stage(Stage::Total, id).unwrap_or(UNKNOWN_NOISE) / 2.0).exp();
-    let Estimate { value, low, high } = Estimate::within(found.median, found.interval);
-    Some(Estimate { value, low: low / half, high: high * half })
+    let within = Estimate::within(found.median, found.interval);
+    Some(beyond_noise(within, of_total(Some(noise), id)))
+}
+
+/// The logarithm by which two runs of a configuration differ in their time, where that is known.
+fn of_total(noise: Option<&NoiseFloor>, id: &ConfigurationId) -> Option<f64> {
+    noise.and_then(|noise| noise.of_stage(Stage::Total, id))
+}
+
+/// A time whose ends are farther apart by what runs differ by.
+fn beyond_noise(time: Estimate, noise: Option<f64>) -> Estimate {
+    let half = (noise.unwrap_or(UNKNOWN_NOISE) / 2.0).exp();
+    Estimate { value: time.value, low: time.low / half, high: time.high * half }
 }
 
 /// By how much runs of one program differ: the smallest and the largest share of a time among the run's configurations, and whether an
@@ -180,9 +217,9 @@ pub fn noise(run: &BenchRun) -> ([f64; 2], bool) {
 }
 
 /// Of each chunk the median of its rounds.
-fn per_chunk(times: &ChunkTimes) -> Vec<f64> {
-    let count = times.timed as usize;
-    let of = |chunk| median(times.chunk_s.iter().copied().skip(chunk).step_by(count).collect(), LEVEL);
+fn per_chunk(chunks: u64, times_s: &[f64]) -> Vec<f64> {
+    let count = chunks as usize;
+    let of = |chunk| median(times_s.iter().copied().skip(chunk).step_by(count).collect(), LEVEL);
     (0..count).filter_map(of).map(|of| of.median).collect()
 }
 

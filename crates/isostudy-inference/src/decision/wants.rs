@@ -16,6 +16,12 @@ pub enum Goal {
     Chunk,
     /// The shortest time for an edit, in chunks.
     Edit,
+    /// The shortest time from stored samples.
+    StoredFastest,
+    /// The same for a chunk.
+    StoredChunk,
+    /// The same for an edit.
+    StoredEdit,
     /// The smallest mean error.
     Closest,
     /// The same with as many triangles.
@@ -73,7 +79,7 @@ impl Want {
     };
 }
 
-const WANTS: [Want; 10] = [
+const WANTS: [Want; 13] = [
     Want {
         goal: Goal::Preferred,
         among: Among::All,
@@ -99,6 +105,26 @@ const WANTS: [Want; 10] = [
         quantity: |of| of.edits.as_ref().map(|of| milliseconds(of.median_s)),
         between: |of| of.error,
         pairs: |of| of.edits.as_ref(),
+        ..Want::PLAIN
+    },
+    Want {
+        goal: Goal::StoredFastest,
+        quantity: |of| of.stored.as_ref()?.whole_s.map(milliseconds),
+        between: |of| of.error,
+        ..Want::PLAIN
+    },
+    Want {
+        goal: Goal::StoredChunk,
+        quantity: |of| Some(milliseconds(of.stored.as_ref()?.chunks.as_ref()?.median_s)),
+        between: |of| of.error,
+        pairs: |of| of.stored.as_ref()?.chunks.as_ref(),
+        ..Want::PLAIN
+    },
+    Want {
+        goal: Goal::StoredEdit,
+        quantity: |of| Some(milliseconds(of.stored.as_ref()?.edits.as_ref()?.median_s)),
+        between: |of| of.error,
+        pairs: |of| of.stored.as_ref()?.edits.as_ref(),
         ..Want::PLAIN
     },
     Want { goal: Goal::Closest, quantity: |of| of.error, between: |of| of.time_s, ..Want::PLAIN },

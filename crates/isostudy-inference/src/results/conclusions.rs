@@ -240,7 +240,14 @@ impl Conclusions {
 impl Goal {
     /// Whether times decide it.
     pub fn is_of_times(self) -> bool {
-        matches!(self, Self::Fastest | Self::Chunk | Self::Edit | Self::Faultless | Self::Topology)
+        match self {
+            Self::Fastest | Self::Chunk | Self::Edit => true,
+            Self::StoredFastest | Self::StoredChunk | Self::StoredEdit => true,
+            Self::Faultless | Self::Topology => true,
+            Self::Preferred | Self::Closest | Self::ClosestPerTriangle | Self::SharpEdges | Self::Regular => {
+                false
+            }
+        }
     }
 }
 

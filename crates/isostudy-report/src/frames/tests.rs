@@ -41,8 +41,15 @@ fn the_same_inputs_give_the_same_bytes() {
 #[test]
 fn what_has_no_rows_has_no_frame() {
     let study = fixture::study();
-    let inputs =
-        Inputs { study: &study, meshes: &[], bench: None, chunks: &[], answers: None, left_out: &[] };
+    let inputs = Inputs {
+        study: &study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        stored: &[],
+        answers: None,
+        left_out: &[],
+    };
     assert!(frames(&inputs).is_empty());
 }
 

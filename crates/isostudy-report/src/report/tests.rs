@@ -19,6 +19,7 @@ fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'stati
         meshes: &[],
         bench: None,
         chunks: &[],
+        stored: &[],
         answers: Some(&answered),
         left_out: &[],
     };
@@ -255,8 +256,15 @@ fn no_answers_at_all() {
         ]
     );
     let small = fixture::small_study();
-    let inputs =
-        Inputs { study: &small, meshes: &[], bench: None, chunks: &[], answers: None, left_out: &[] };
+    let inputs = Inputs {
+        study: &small,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        stored: &[],
+        answers: None,
+        left_out: &[],
+    };
     let results = Results::of(&inputs);
     let report = super::report(&results, &crate::tables(&results), &[], Vec::new());
     assert_eq!(report.sections.iter().map(|s| s.id).collect::<Vec<_>>(), ["tables"]);
@@ -357,6 +365,7 @@ fn who_is_left_out_is_left_out_everywhere() {
         meshes: &[],
         bench: None,
         chunks: &[],
+        stored: &[],
         answers: Some(&answered),
         left_out: &[],
     };
@@ -383,6 +392,7 @@ fn who_is_left_out_is_left_out_everywhere() {
         meshes: &[],
         bench: None,
         chunks: &[],
+        stored: &[],
         answers: Some(&answered),
         left_out: &[],
     };

@@ -47,14 +47,14 @@ pub(super) fn chunks(inputs: &Inputs<'_>) -> Option<Table> {
 }
 
 /// Median, both ends and the longest.
-fn milliseconds<'a>(
-    columns: Columns<&'a ChunkTimes>,
+pub(super) fn milliseconds<'a, T>(
+    columns: Columns<&'a T>,
     name: &str,
     heading: &str,
-    seconds: fn(&ChunkTimes) -> &Vec<f64>,
-) -> Columns<&'a ChunkTimes> {
-    let found = |of: &ChunkTimes| median(seconds(of).clone(), LEVEL);
-    let ends = |of: &ChunkTimes| found(of).and_then(|of| of.interval);
+    seconds: fn(&T) -> &Vec<f64>,
+) -> Columns<&'a T> {
+    let found = |of: &T| median(seconds(of).clone(), LEVEL);
+    let ends = |of: &T| found(of).and_then(|of| of.interval);
     let shown = |seconds: Option<f64>| Cell::number(seconds.map(|seconds| 1e3 * seconds), 3);
     columns
         .quantity(name, heading, "ms", |of| shown(found(of).map(|of| of.median)))

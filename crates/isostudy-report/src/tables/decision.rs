@@ -65,6 +65,8 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick
          qualifies."
             .into(),
     );
+    let apart = inputs.study.methods.iter().filter_map(|of| Some((of.id, of.apart.as_ref()?)));
+    table.notes.extend(apart.map(|(id, why)| format!("No choice names {id}: {why}.")));
     table.notes.extend(busy(inputs));
     table.notes.push(conditions(inputs, objects));
     table

@@ -12,6 +12,7 @@ use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
 use isostudy_design::Study;
 use isostudy_design::config::ResponsesSection;
+use isostudy_design::record::{ChunkTimes, StoredTimes};
 use isostudy_inference::tally::QuestionCount;
 use isostudy_inference::{Answered, Preferences, Results};
 use isostudy_paper::Paper;
@@ -28,13 +29,13 @@ impl Pipeline<'_> {
         &self,
         meshes: &Meshes,
         timings: &Stamp,
-        chunks: &[Stamp],
+        [chunks, stored]: [&[Stamp]; 2],
         pictures: &[Stamp],
         shown: &ShownFirst,
     ) -> Result<Stamp> {
         let step = Step::begin("tables", 1, 1);
         let mut inputs = study_inputs(self.study)?.stamp(timings);
-        for stamp in meshes.stamps().chain(chunks).chain(pictures) {
+        for stamp in meshes.stamps().chain(chunks).chain(stored).chain(pictures) {
             inputs = inputs.stamp(stamp);
         }
         let left_out = self.left_out();
@@ -45,7 +46,8 @@ impl Pipeline<'_> {
         let stamp = self.store.stage("tables", inputs, |writer| {
             let records = self.mesh_records(meshes)?;
             let run = self.bench_run(timings)?;
-            let chunks = self.chunk_records(chunks)?;
+            let chunks: Vec<ChunkTimes> = self.times_apart(chunks)?;
+            let stored: Vec<StoredTimes> = self.times_apart(stored)?;
             let answers = crate::answer_files::of_study(self.study)?;
             let answers = answers.and_then(|reading| Answered::of(self.study, reading.responses));
             let inputs = isostudy_inference::Inputs {
@@ -53,6 +55,7 @@ impl Pipeline<'_> {
                 meshes: &records,
                 bench: Some(&run),
                 chunks: &chunks,
+                stored: &stored,
                 answers: answers.as_ref(),
                 left_out: &left_out,
             };
@@ -86,6 +89,7 @@ pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store)
         meshes: &[],
         bench: None,
         chunks: &[],
+        stored: &[],
         answers: answers.as_ref(),
         left_out: &[],
     };
