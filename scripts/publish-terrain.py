@@ -173,7 +173,7 @@ def unbeaten():
     """Who is on each front, object by object."""
     rows = list(csv.DictReader((TERRAIN / "tables/fronts.csv").open()))
     fronts = list(dict.fromkeys(row["front"] for row in rows))
-    lines = ["| nobody is better in both than | " + " | ".join(fronts) + " |", "|---|" + "---|" * len(fronts)]
+    lines = ["| On | " + " | ".join(f"Not beaten in {front}" for front in fronts) + " |", "|---|" + "---|" * len(fronts)]
     for name in dict.fromkeys(row["object"] for row in rows):
         on = lambda front: [
             f"`{row['method']}`"

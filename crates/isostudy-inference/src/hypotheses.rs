@@ -60,6 +60,8 @@ pub enum Conclusion {
     AveragesOut,
     /// The mean is smaller than the margin, and people favour a side: who answers by the side hides what is preferred.
     HiddenBySide,
+    /// A preference was shown, people favour a side, and nothing was shown on both sides: the side may have made it.
+    MayBeSide,
     /// Neither can be said.
     Open,
     /// No outcome of so few participants who lean one way or the other could have shown anything.
@@ -79,6 +81,7 @@ impl Conclusion {
             Self::Equal => "equal within the margin",
             Self::AveragesOut => "averages out",
             Self::HiddenBySide => "hidden by a side",
+            Self::MayBeSide => "may be the side's",
             Self::Open => "open",
             Self::TooFew => "too few",
             Self::NobodyLeans => "nobody leans",
@@ -178,6 +181,8 @@ pub struct Hypothesis {
     by_object: bool,
     /// Whether people were shown to favour a side.
     by_side: bool,
+    /// Whether besides no pair was shown with its sides exchanged.
+    on_one_side: bool,
     /// What decides its conclusion.
     pub rules: Rules,
 }
@@ -198,13 +203,15 @@ impl Hypothesis {
             family_size: 1,
             by_object: false,
             by_side: false,
+            on_one_side: false,
             rules,
         }
     }
 
-    /// Says that people were shown to favour a side: what is equal within the margin may then be hidden by it.
-    pub(crate) fn mark_side(&mut self) {
-        self.by_side = true;
+    /// Says that people were shown to favour a side: what is equal within the margin may then be hidden by it. If no pair was shown
+    /// with its sides exchanged, a preference may be made by it.
+    pub(crate) fn mark_side(&mut self, on_one_side: bool) {
+        (self.by_side, self.on_one_side) = (true, on_one_side);
     }
 
     /// Whether anybody has a score.
@@ -219,6 +226,7 @@ impl Hypothesis {
             _ if !self.is_tested() => Conclusion::NotTested,
             _ if self.test.leaning() == 0 => Conclusion::NobodyLeans,
             _ if self.least_possible() > level => Conclusion::TooFew,
+            (true, _) if self.on_one_side => Conclusion::MayBeSide,
             (true, false) => Conclusion::Differs,
             (true, true) => Conclusion::DiffersWithinMargin,
             (false, true) if self.by_object => Conclusion::AveragesOut,

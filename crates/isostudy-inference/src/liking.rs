@@ -26,6 +26,25 @@ pub struct Liking {
     pub worths: Result<Vec<(f64, Option<Interval>)>, FitError>,
     /// The most liked; `None` where there is no one scale.
     pub top: Option<Top>,
+    /// Every two methods, in the study's order; none where there is no one scale.
+    pub pairs: Vec<LikedPair>,
+}
+
+/// What is known of two methods' worths on one scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LikedPair {
+    /// The one method.
+    pub first: MethodId,
+    /// The other.
+    pub second: MethodId,
+    /// Log worth of the first less that of the second.
+    pub log_odds: f64,
+    /// p of no difference on the scale, adjusted by Holm over its pairs; `None` where it has none.
+    pub adjusted: Option<f64>,
+    /// Which of them a held test about the two themselves prefers.
+    pub asked: Option<MethodId>,
+    /// Which of them was shown to be liked more, by the scale or by a test about the two.
+    pub shown: Option<MethodId>,
 }
 
 /// The top of a scale.
@@ -70,8 +89,28 @@ impl Liking {
             None => is_shown(Some(study), &answered.hypotheses, "", methods[a].as_str(), methods[b].as_str()),
         };
         let top = found.as_ref().ok().map(|scale| Top::of(scale, &methods, level, &shown));
+        let pair = |of: &Difference| {
+            let [first, second] = [methods[of.first], methods[of.second]];
+            let adjusted = of.spread.map(|spread| spread.adjusted);
+            let asked = match (shown(of.first, of.second), shown(of.second, of.first)) {
+                (true, _) => Some(first),
+                (_, true) => Some(second),
+                _ => None,
+            };
+            let by_scale =
+                adjusted.filter(|&p| p <= level).map(|_| if of.log_odds > 0.0 { first } else { second });
+            LikedPair { first, second, log_odds: of.log_odds, adjusted, asked, shown: asked.or(by_scale) }
+        };
+        let pairs =
+            found.as_ref().map_or_else(|_| Vec::new(), |scale| scale.differences.iter().map(pair).collect());
         let worths = found.map(|scale| centred(&scale, &participants));
-        Some(Self { object, methods, worths, top })
+        Some(Self { object, methods, worths, top, pairs })
+    }
+
+    /// The method that was shown to be liked more, then the other, of every two of which one was.
+    pub fn shown(&self) -> Vec<[MethodId; 2]> {
+        let other = |of: &LikedPair, one| if of.first == one { of.second } else { of.first };
+        self.pairs.iter().filter_map(|of| of.shown.map(|one| [one, other(of, one)])).collect()
     }
 
     /// A method's worth; `None` where it has none.

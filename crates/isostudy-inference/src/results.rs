@@ -87,7 +87,10 @@ pub struct Decision<'a> {
 impl<'a> Decision<'a> {
     fn of(inputs: &Inputs<'a>, likings: &[Liking]) -> Self {
         let objects = candidates(inputs, likings);
-        let fronts = objects.iter().map(|of| fronts(&of.candidates)).collect();
+        // Beside other work nothing is said that times decide.
+        let is_busy = inputs.bench.is_some_and(|run| beside_other_work(run).is_some());
+        let is_told = |front: &Front| !is_busy || !front.axes.is_of_times();
+        let fronts = objects.iter().map(|of| fronts(of).into_iter().filter(is_told).collect()).collect();
         Self { picks: picks(&objects), fronts, objects }
     }
 
@@ -281,7 +284,8 @@ impl<'a> Base<'a> {
         let ((without_one, majorities), (robustness, undone)) = tested;
         let mut hypotheses = hypotheses;
         if audit.iter().any(finds_side) {
-            hypotheses.to_mut().iter_mut().for_each(Hypothesis::mark_side);
+            let on_one_side = sides.as_ref().is_some_and(Sides::go_with_items);
+            hypotheses.to_mut().iter_mut().for_each(|of| of.mark_side(on_one_side));
         }
         let agreement = match study {
             Some(study) => of_study(study, &declared),

@@ -8,6 +8,7 @@ use super::people::{Given, Pressed, method, normal};
 use super::routes::Route;
 use crate::{fixture, tables};
 use isostudy_design::Study;
+use isostudy_design::config::SideRule;
 use isostudy_design::forms::{Questionnaire, Role};
 use isostudy_design::record::{MeshRecord, Purpose};
 use isostudy_inference::{Answered, Inputs, Results};
@@ -31,9 +32,28 @@ enum Truth {
     AlwaysLeft,
     /// Two camps with opposite tastes, of equal size.
     Camps,
+    /// Everybody answers that they have no preference.
+    Ties,
+    /// The worths on the first object; no preference on the others.
+    OneObject,
+    /// The worths, of four people.
+    Few,
 }
 
-const TRUTHS: [Truth; 5] = [Truth::Nothing, Truth::Worths, Truth::Drawn, Truth::AlwaysLeft, Truth::Camps];
+const TRUTHS: [Truth; 8] = [
+    Truth::Nothing,
+    Truth::Worths,
+    Truth::Drawn,
+    Truth::AlwaysLeft,
+    Truth::Camps,
+    Truth::Ties,
+    Truth::OneObject,
+    Truth::Few,
+];
+
+/// People per study, and per study of few.
+const PEOPLE: usize = 36;
+const FEW: usize = 4;
 
 /// `bi` stands beside stronger others than `si`, so that it wins less of its showings.
 const WORTHS: [(&str, f64); 6] =
@@ -48,14 +68,15 @@ fn planted(study: &Study, truth: Truth, people: usize, seed: u64) -> Planted {
     let key = Questionnaire::of(study).expect("a study with forms").key();
     let mut random = Pcg64::seed_from_u64(seed << 8 | truth as u64);
     let worth = |id: &str, random: &mut Pcg64| match truth {
-        Truth::Worths | Truth::Camps => {
+        Truth::Worths | Truth::Camps | Truth::OneObject | Truth::Few => {
             WORTHS.iter().find(|(known, _)| *known == id).map_or(0.0, |(_, worth)| *worth)
         }
         Truth::Drawn => normal(random),
-        Truth::Nothing | Truth::AlwaysLeft => 0.0,
+        Truth::Nothing | Truth::AlwaysLeft | Truth::Ties => 0.0,
     };
     let worths: BTreeMap<String, f64> =
         study.method_ids().iter().map(|id| (id.to_string(), worth(id.as_str(), &mut random))).collect();
+    let first = format!("{}_", study.file.objects[0].id);
     let forms = key.chunk_by(|a, b| a.form == b.form).take(people);
     let mut given = Vec::new();
     for (person, form) in forms.enumerate() {
@@ -70,6 +91,8 @@ fn planted(study: &Study, truth: Truth, people: usize, seed: u64) -> Planted {
             let at = random.random::<f64>() * (half + 0.4 + 1.0 / half);
             let pressed = match at {
                 _ if truth == Truth::AlwaysLeft => Pressed::Left,
+                _ if truth == Truth::Ties => Pressed::Neither,
+                _ if truth == Truth::OneObject && !shown.left.starts_with(&first) => Pressed::Neither,
                 _ if shown.role == Role::Control => Pressed::Neither,
                 at if at < half => Pressed::Left,
                 at if at < half + 0.4 => Pressed::Neither,
@@ -98,10 +121,11 @@ fn meshes(study: &Study) -> Vec<MeshRecord> {
     study.configurations.iter().map(mesh).collect()
 }
 
-/// What is printed: every table, and the abstract's line of findings.
+/// What is printed: every table, and two lines of the abstract.
 struct Printed {
     tables: Vec<Table>,
     found: String,
+    next: String,
 }
 
 fn printed(study: &Study, meshes: &[MeshRecord], given: &[Given]) -> Printed {
@@ -119,8 +143,10 @@ fn printed(study: &Study, meshes: &[MeshRecord], given: &[Given]) -> Printed {
     let results = Results::of(&inputs);
     let tables = tables(&results);
     let report = report(&results, &tables, &[], Vec::new());
-    let found = report.summary.iter().find(|line| line.label == "Found").expect("something is found");
-    Printed { found: found.text.clone(), tables }
+    let line = |label: &str| {
+        report.summary.iter().find(|line| line.label == label).expect("the abstract has it").text.clone()
+    };
+    Printed { found: line("Found"), next: line("Next"), tables }
 }
 
 impl Printed {
@@ -159,6 +185,58 @@ impl Printed {
     }
 }
 
+/// What one line denies of another, or of the truth.
+fn contradictions(study: &Study, truth: Truth, printed: &Printed) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let found = printed.found.as_str();
+    let mut fault = |is: bool, what: &str| {
+        if is {
+            wrong.push(format!("{what}: {found} Next: {}", printed.next));
+        }
+    };
+    let says_scale = found.contains("On one scale of ");
+    fault(says_scale && found.contains("No preference could be shown"), "nothing and something are shown");
+    if truth == Truth::Ties {
+        fault(found.contains("so few"), "ties are called too few");
+        fault(!found.contains("were \u{201c}no preference\u{201d}"), "does not say that all are ties");
+        fault(printed.next.contains("would decide"), "more people would decide ties");
+    }
+    if truth == Truth::Camps && found.contains("more than any two items") {
+        fault(printed.next.contains("would decide"), "more people would decide camps");
+    }
+    // Where nothing was shown on both sides, the side may have made it.
+    let is_listed = study.file.forms.as_ref().is_some_and(|forms| forms.sides == SideRule::AsListed);
+    let favours = found.contains("People favour a side");
+    let holds = printed.rows("contrasts").any(|row| row["verdict"].starts_with("holds"));
+    fault(is_listed && favours && holds, "holds although a side may have made it");
+    // The most liked of each object.
+    let names: Vec<&str> = study.file.objects.iter().map(|of| of.name.as_str()).collect();
+    let rows: Vec<_> = printed.rows("likings").collect();
+    if found.contains("Most liked on every object") {
+        let is_told = |name: &&str| rows.iter().any(|row| row["object"] == **name);
+        fault(!names.iter().all(is_told), "names the most liked on objects without a scale");
+        fault(truth == Truth::OneObject, "names the most liked where nobody prefers anything");
+    }
+    for name in names {
+        let Some(text) = printed.sentence(&format!("Most liked on the {name}: ")) else { continue };
+        let Some((top, tied)) = text.split_once(", not shown to differ from ") else { continue };
+        let top = top.split(' ').next().unwrap();
+        let is_shown = |other: &str| {
+            rows.iter().any(|row| {
+                let pair = [row["first"].as_str(), row["second"].as_str()];
+                row["object"] == name
+                    && (pair == [top, other] || pair == [other, top])
+                    && row["verdict"] == "holds"
+            })
+        };
+        let others = tied.split(", ").flat_map(|part| part.split(" and "));
+        for other in others.filter(|other| is_shown(other)) {
+            fault(true, &format!("{top} and {other} differ on the {name}, and are said not to"));
+        }
+    }
+    wrong
+}
+
 /// A held test may be mistaken, in one of twenty studies; what it says then is no contradiction.
 const MISTAKEN: &str = "mistaken:";
 
@@ -188,9 +266,10 @@ fn wrong(study: &Study, truth: Truth, planted: &Planted, printed: &Printed) -> V
     if side && equal > 0 {
         wrong.push(format!("{equal} are equal although people favour a side"));
     }
+    wrong.extend(contradictions(study, truth, printed));
     // The scale.
     if let Some(text) = printed.sentence("On one scale of ") {
-        let said = text.split_once(" items, ").unwrap().1.replace(" differences hold", "");
+        let (said, _) = text.split_once(" items, ").unwrap().1.split_once(" difference").unwrap();
         let groups: Vec<String> = printed.rows("differences").map(|row| row["group"].clone()).collect();
         let counted = groups.iter().map(|group| {
             let own = || printed.rows("differences").filter(|row| row["group"] == *group);
@@ -267,11 +346,12 @@ struct Tried {
 fn run(studies: u64) -> Tried {
     let mut tried = Tried { studies: 0, faults: Vec::new(), mistaken: [0; 2], metrics: [0; 2] };
     for design in of_papers_methods() {
-        let study = design.study(36);
+        let study = design.study(PEOPLE);
         let meshes = meshes(&study);
         for truth in TRUTHS {
             for seed in 0..studies {
-                let planted = planted(&study, truth, 36, seed);
+                let people = if truth == Truth::Few { FEW } else { PEOPLE };
+                let planted = planted(&study, truth, people, seed);
                 let printed = printed(&study, &meshes, &planted.given);
                 let own = wrong(&study, truth, &planted, &printed);
                 let (mistaken, own): (Vec<_>, Vec<_>) =

@@ -10,6 +10,7 @@ pub(crate) mod contrasts;
 mod decision;
 pub(crate) mod design;
 pub(crate) mod glance;
+mod likings;
 mod mesh_quality;
 pub(crate) mod models;
 mod omnibus;
@@ -43,6 +44,7 @@ pub fn tables(results: &Results<'_>) -> Vec<Table> {
         let prediction = prediction.flat_map(|found| prediction::all(inputs.study, found));
         tables.extend(prediction.filter(|table| !table.rows.is_empty()));
     }
+    tables.extend(likings::likings(results));
     tables.extend(mesh_quality::quality(inputs));
     tables.extend(mesh_quality::topology(inputs));
     tables.extend(accuracy::accuracy(inputs));

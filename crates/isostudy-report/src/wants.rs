@@ -90,14 +90,18 @@ pub(crate) fn words(goal: Goal) -> Words {
         Goal::Regular => {
             ["regular", "most regular triangles", "{}", "the most regular triangles", "mean radius ratio {}"]
         }
-        Goal::Faultless => {
-            ["faultless", "no fault, soonest", "{} ms", "a manifold without intersections, soonest", "{} ms"]
-        }
+        Goal::Faultless => [
+            "faultless",
+            "shortest time without a fault",
+            "{} ms",
+            "the shortest time to a manifold without intersections",
+            "{} ms",
+        ],
         Goal::Topology => [
             "topology",
-            "no fault and the samples' topology, soonest",
+            "the same with the samples' topology",
             "{} ms",
-            "the topology of the interpolated samples and no fault, soonest",
+            "the same with the topology of the interpolated samples",
             "{} ms",
         ],
     };

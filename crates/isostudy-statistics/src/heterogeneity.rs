@@ -40,6 +40,13 @@ pub struct Heterogeneity {
     pub p: f64,
 }
 
+impl Heterogeneity {
+    /// Whether the upper end is an end, and not the largest value that is looked at.
+    pub fn is_bounded(&self) -> bool {
+        self.interval.high < LARGEST
+    }
+}
+
 /// The spread between the people of a group.
 ///
 /// # Errors

@@ -29,6 +29,8 @@ pub struct ObjectCandidates<'a> {
     pub candidates: Vec<Candidate<'a>>,
     /// The most liked on it, where that is known.
     pub most_liked: Option<Top>,
+    /// Which of every two methods was shown to be liked more on it: the one, then the other.
+    pub liked_more: Vec<[MethodId; 2]>,
 }
 
 /// A method on one object, at the benchmark spacing or what its budget made of it.
@@ -177,6 +179,7 @@ pub fn candidates<'a>(inputs: &Inputs<'a>, likings: &[Liking]) -> Vec<ObjectCand
             object,
             candidates: methods.iter().filter_map(candidate).collect(),
             most_liked: liking.and_then(|of| of.top.clone()),
+            liked_more: liking.map_or_else(Vec::new, Liking::shown),
         }
     };
     let all = study.file.objects.iter().enumerate().map(of_object);

@@ -1,6 +1,6 @@
 //! Pareto fronts: who is beaten in both of two quantities, and by whom.
 
-use super::{Candidate, Estimate};
+use super::{Candidate, Estimate, ObjectCandidates};
 use isostudy_design::MethodId;
 
 /// What is set against what. Both quantities of a front are better if they are smaller, but for preference.
@@ -25,6 +25,11 @@ impl Axes {
             Self::TrianglesError => "triangles and error",
             Self::TimePreference => "time and preference",
         }
+    }
+
+    /// Whether a time is one of both quantities.
+    pub fn is_of_times(self) -> bool {
+        matches!(self, Self::TimeError | Self::TimePreference)
     }
 
     /// Both quantities of a candidate that has them.
@@ -67,8 +72,10 @@ pub struct FrontPoint {
 }
 
 /// The fronts of an object on which two methods at least have a place. Who met a budget with the very cells of an earlier method of
-/// the same recipe is that method.
-pub fn fronts(candidates: &[Candidate<'_>]) -> Vec<Front> {
+/// the same recipe is that method. In preference one beats another if it was shown to be liked more: two intervals, each about one worth,
+/// do not tell that.
+pub fn fronts(of: &ObjectCandidates<'_>) -> Vec<Front> {
+    let candidates = &of.candidates;
     let is_new = |(place, candidate): &(usize, &Candidate<'_>)| {
         let same = |other: &Candidate<'_>| {
             other.method.recipe == candidate.method.recipe && other.mesh.spacing == candidate.mesh.spacing
@@ -85,11 +92,17 @@ pub fn fronts(candidates: &[Candidate<'_>]) -> Vec<Front> {
             .map(|&(_, [x, y])| [x, if axes == Axes::TimePreference { -y } else { y }])
             .collect();
         let point = |(place, &(method, at)): (usize, &(MethodId, [Estimate; 2]))| {
-            let beating = |rule: fn(&[Estimate; 2], &[Estimate; 2]) -> bool| -> Vec<MethodId> {
-                let others = placed.iter().zip(&costs).filter(|(_, cost)| rule(cost, &costs[place]));
+            let beating = |rule: &dyn Fn(MethodId, &[Estimate; 2]) -> bool| -> Vec<MethodId> {
+                let others = placed.iter().zip(&costs).filter(|((method, _), cost)| rule(*method, cost));
                 others.map(|((method, _), _)| *method).collect()
             };
-            let (surely, perhaps) = (beating(beats_surely), beating(beats));
+            let own = &costs[place];
+            let is_liked_more = |other: MethodId| of.liked_more.contains(&[other, method]);
+            let surely = beating(&|other, cost| match axes {
+                Axes::TimePreference => is_liked_more(other) && cost[0].high <= own[0].low,
+                Axes::TimeError | Axes::TrianglesError => beats_surely(cost, own),
+            });
+            let perhaps = beating(&|_, cost| beats(cost, own));
             let standing = match (surely.is_empty(), perhaps.is_empty()) {
                 (false, _) => Standing::Beaten(surely),
                 (true, false) => Standing::PerhapsBeaten(perhaps),

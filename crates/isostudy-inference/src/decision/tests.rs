@@ -49,7 +49,7 @@ fn who_is_beaten_in_both_is_named_with_those_who_beat_them() {
     let objects = candidates(&all.inputs(), &[]);
     assert_eq!(objects.len(), 3);
     for of in &objects {
-        let fronts = fronts(&of.candidates);
+        let fronts = fronts(of);
         let front = fronts.iter().find(|front| front.axes == Axes::TimeError).unwrap();
         let standings: Vec<&Standing> = front.points.iter().map(|point| &point.standing).collect();
         let want = [

@@ -76,6 +76,8 @@ pub enum Why {
     NobodyLeans,
     /// The design, or what was recorded, does not tell.
     Design,
+    /// People favour a side, and nothing was shown on both sides: the side may have made what is there.
+    Side,
     /// The model has no estimate.
     NoEstimate(FitError),
     /// Some items never won against the others, so that nothing bounds their worths.
@@ -273,6 +275,7 @@ fn contrast(preferences: &Preferences<'_>, place: usize, row: &Row, limits: &[Li
         Tested::Equal => Verdict::Equal,
         Tested::TooFew => Verdict::NotJudged(Why::TooFew),
         Tested::NobodyLeans => Verdict::NotJudged(Why::NobodyLeans),
+        Tested::MayBeSide => Verdict::NotJudged(Why::Side),
         Tested::Open | Tested::AveragesOut | Tested::HiddenBySide | Tested::NotTested => Verdict::Undecided,
     };
     let level = hypothesis.rules.level;

@@ -31,6 +31,8 @@ pub(crate) struct Hypothesis {
     by_object: Option<bool>,
     /// Whether people favour a side; `None` where that is not plain to see.
     by_side: Option<bool>,
+    /// Whether some pair was shown with its sides exchanged.
+    alternates: bool,
     /// Question by sign, and by which part of a difference.
     parts: Vec<BTreeMap<usize, i64>>,
 }
@@ -64,6 +66,7 @@ impl Hypothesis {
             _ if 2.0_f64.powi(1 - leaning as i32) > LEVEL => "too few",
             (false, true) if self.by_object? => "averages out",
             (false, true) if self.by_side? => "hidden by a side",
+            (true, _) if !self.alternates && self.by_side? => "may be the side's",
             (true, false) => "differs",
             (true, true) => "differs, within the margin",
             (false, true) => "equal within the margin",
@@ -88,18 +91,24 @@ pub(crate) fn hypotheses(oracle: &Oracle<'_>) -> Vec<Hypothesis> {
     correct(&mut single.iter_mut().collect::<Vec<_>>(), benjamini_hochberg);
     all.extend(single);
     let by_side = is_side_favoured(oracle);
-    all.iter_mut().for_each(|of| of.by_side = by_side);
+    let alternates = lefts(oracle).values().any(|lefts| lefts.len() > 1);
+    all.iter_mut().for_each(|of| (of.by_side, of.alternates) = (by_side, alternates));
     all
+}
+
+/// By question, what stood on the left.
+fn lefts<'a>(oracle: &'a Oracle<'_>) -> BTreeMap<usize, BTreeSet<&'a str>> {
+    let mut lefts: BTreeMap<usize, BTreeSet<&str>> = BTreeMap::new();
+    for &(question, given) in oracle.comparisons.iter().flatten() {
+        lefts.entry(question).or_default().insert(given.left());
+    }
+    lefts
 }
 
 /// Whether a side is favoured, where it is plain: everybody always took the same side of pairs that were shown in both orders; or answers
 /// fall about evenly on both; or no pair was shown in both orders.
 fn is_side_favoured(oracle: &Oracle<'_>) -> Option<bool> {
-    let mut lefts: BTreeMap<usize, BTreeSet<&str>> = BTreeMap::new();
-    for &(question, given) in oracle.comparisons.iter().flatten() {
-        lefts.entry(question).or_default().insert(given.left());
-    }
-    let alternate = lefts.values().any(|lefts| lefts.len() > 1);
+    let alternate = lefts(oracle).values().any(|lefts| lefts.len() > 1);
     let count = |pressed| oracle.given.iter().filter(|of| of.pressed == pressed).count() as f64;
     let [left, right] = [Pressed::Left, Pressed::Right].map(count);
     match left / (left + right) {
@@ -308,6 +317,7 @@ fn tested(
         equivalence: None,
         by_object: Some(false),
         by_side: Some(false),
+        alternates: true,
         family,
         scope,
         scores,

@@ -10,7 +10,7 @@ use isostudy_inference::omnibus::Omnibus;
 use isostudy_inference::scale::GroupScale;
 use isostudy_inference::{Preferences, Results, audit};
 use isostudy_statistics::{DeclaredBallot, ShownBallot};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What sentences are made from.
 pub(super) struct Evidence<'a> {
@@ -123,6 +123,14 @@ impl<'a> Evidence<'a> {
     pub(super) fn questions(&self) -> usize {
         self.shown.iter().map(|b| b.question()).collect::<BTreeSet<_>>().len()
     }
+}
+
+/// Whether somebody gave more answers than another.
+pub(super) fn answer_unequally(shown: &[ShownBallot]) -> bool {
+    let mut given: BTreeMap<usize, usize> = BTreeMap::new();
+    shown.iter().for_each(|of| *given.entry(of.participant()).or_default() += 1);
+    let mut counts = given.values();
+    counts.next().is_some_and(|first| counts.any(|other| other != first))
 }
 
 /// How many people gave these answers.

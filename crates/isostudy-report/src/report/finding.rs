@@ -36,6 +36,9 @@ pub(super) fn of_contrast(evidence: &Evidence<'_>, row: &Row, found: &Conclusion
         Verdict::NotJudged(Why::NobodyLeans) => format!(
             "{opening} against {second}{scope}: nobody leans either way ({counts}), so no test has anything to work on."
         ),
+        Verdict::NotJudged(Why::Side) => format!(
+            "{opening} against {second}{scope} is not decided: {measured}. People favour a side, and no pair was shown on both."
+        ),
         Verdict::NotJudged(_) => format!(
             "{opening} against {second}{scope} is not decided: {counts}. No outcome of so few people who lean one way or the other \
              is significant (smallest possible {}).",

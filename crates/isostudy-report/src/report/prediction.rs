@@ -38,9 +38,13 @@ fn metric(found: &MetricPrediction, family: usize, level: f64) -> Finding {
     let (standing, verdict) = match (found.holds(level), toward) {
         (true, true) => (Standing::Holds, "goes with preference"),
         (true, false) => (Standing::Holds, "goes against preference"),
-        (false, _) if is_of_people => (
+        (false, true) if is_of_people => (
             Standing::Open,
-            "agrees with these people's choices, which is not shown to be more than chance among these methods",
+            "goes with these people's choices, which is not shown to be more than chance among these methods",
+        ),
+        (false, false) if is_of_people => (
+            Standing::Open,
+            "goes against these people's choices, which is not shown to be more than chance among these methods",
         ),
         (false, _) => (Standing::Open, "is not shown to go with preference"),
     };
@@ -81,7 +85,7 @@ fn relabelled(found: &MetricPrediction, family: usize) -> String {
         if family > 1 { format!(", {} after Holm's correction", p(of.adjusted)) } else { String::new() };
     let orders = if of.is_exact { "all" } else { "the drawn" };
     format!(
-        " Of {orders} {} ways to give the metric's values to the methods, {} % agree with the answers as well as the true one \
+        " Of {orders} {} ways to give the metric's values to the methods, {} % fit the answers as well as the true one \
          ({}{correction}).",
         whole(of.orders as u64),
         number(100.0 * of.p, 1),

@@ -4,17 +4,19 @@
 use super::evidence::Evidence;
 use super::told::{self, named};
 use super::{SummaryLine, asked, limits};
-use crate::standing::Standing;
 use crate::wants;
 use crate::words::{capital, counted, list, number};
 use isostudy_design::record::Purpose;
 use isostudy_design::{Factor, Method, Study};
 use isostudy_inference::Preferences;
-use isostudy_inference::conclusions::Conclusion;
+use isostudy_inference::conclusions::{About, Conclusion, Verdict, Why};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
 use isostudy_inference::preference::two_factors;
 use isostudy_inference::results::Results;
+
+/// A share of the decided answers on one side from which on the side, not what stood there, decides much.
+const LARGE_SIDE: f64 = 0.6;
 
 /// `inputs` are those of a study.
 pub(super) fn lines(evidence: &Evidence<'_>, results: Option<&Results<'_>>) -> Vec<SummaryLine> {
@@ -128,16 +130,27 @@ fn sure(evidence: &Evidence<'_>) -> Option<String> {
     ))
 }
 
+/// Whether people's tastes were shown to differ, by more than any two items do on average.
+fn differ_more_than_items(preferences: &Preferences<'_>) -> bool {
+    let found = &preferences.conclusions;
+    let is_shown = found.about(About::People).is_some_and(Conclusion::holds);
+    is_shown && found.spread.is_some_and(|spread| spread.of.sd > spread.largest_difference)
+}
+
 fn next(evidence: &Evidence<'_>) -> String {
     let concluded = evidence.preferences.map_or_else(Vec::new, Preferences::concluded);
-    let is_undecided = |of: &Conclusion| matches!(Standing::of(of), Standing::Open | Standing::TooFew);
+    // Where nobody leans, more people who do not lean change nothing.
+    let is_undecided =
+        |of: &Conclusion| matches!(of.verdict, Verdict::Undecided | Verdict::NotJudged(Why::TooFew));
     let undecided = concluded.iter().filter(|(_, of)| is_undecided(of)).count();
     if evidence.shown.is_empty() {
         return "Ask people: isostudy design power says how many, and isostudy bundle makes what they see."
             .into();
     }
     // More answers of people who answer by the side would not help.
-    if evidence.is_side_favoured() {
+    let is_large =
+        evidence.preferences.and_then(told::side_share).is_some_and(|(_, share)| share >= LARGE_SIDE);
+    if evidence.is_side_favoured() && is_large {
         return "Find out why people answer by the side before you ask more of them: look at the page, the instruction and the \
                 people who broke a rule."
             .into();
@@ -146,6 +159,16 @@ fn next(evidence: &Evidence<'_>) -> String {
         return "Ask new people with the sides of each pair exchanged for half of them: configs/balanced.toml is such a \
                 study."
             .into();
+    }
+    if evidence.preferences.is_some_and(differ_more_than_items) {
+        return "Find out who likes what: people differ more than what they saw does, and more of the same people would not decide \
+                it. Ask them about themselves, and compare those who answer alike."
+            .into();
+    }
+    if undecided > 0 && evidence.study.is_none() {
+        let (contrasts, stay) =
+            (capital(&counted(undecided, "contrast")), if undecided == 1 { "stays" } else { "stay" });
+        return format!("{contrasts} {stay} undecided: more people may decide them.");
     }
     if undecided > 0 {
         return format!(

@@ -1,6 +1,7 @@
 //! Conclusions in sentences: what the abstract finds, and the last lines of `analyse`.
 
-use super::evidence::participants;
+use super::evidence::{answer_unequally, participants};
+use super::worths::WEIGHTS;
 use crate::wants;
 use crate::words::{capital, counted, interval, list, number, people, percent};
 use isostudy_design::Study;
@@ -10,6 +11,7 @@ use isostudy_inference::glance::Row;
 use isostudy_inference::hypotheses::Target;
 use isostudy_inference::prediction::MetricPrediction;
 use isostudy_inference::{Preferences, Results};
+use isostudy_statistics::{Outcome, ShownBallot};
 
 /// Contrasts over all answers that are not named one by one.
 const MANY: usize = 12;
@@ -29,7 +31,7 @@ pub(crate) fn sentences(preferences: &Preferences<'_>, results: Option<&Results<
         true => [liked, scale, pairs, objects],
         false => [pairs, objects, scale, liked],
     };
-    let rest = [told.side(), told.spread(), told.screening(), told.prediction()];
+    let rest = [told.weights(), told.side(), told.spread(), told.screening(), told.prediction()];
     first.into_iter().chain(rest).flatten().collect()
 }
 
@@ -63,18 +65,30 @@ impl Told<'_, '_> {
             return None;
         }
         let that = |wanted: fn(&Verdict) -> bool| own.iter().filter(move |(_, verdict)| wanted(verdict));
-        let is_decidable = |of: &Verdict| !matches!(of, Verdict::NotJudged(Why::TooFew | Why::NobodyLeans));
+        let is_all = |why: Why| own.iter().all(|(_, of)| **of == Verdict::NotJudged(why));
+        let undecidable =
+            own.iter().all(|(_, of)| matches!(of, Verdict::NotJudged(Why::TooFew | Why::NobodyLeans)));
         let holding: Vec<String> = that(|of| matches!(of, Verdict::Holds { .. }))
             .map(|(row, _)| format!("{} ({})", row.pair(), percent(row.share)))
             .collect();
         let equal: Vec<String> =
             that(|of| *of == Verdict::Equal).map(|(row, _)| row.things.join(" and ")).collect();
+        let given = self.preferences.shown.len();
+        let is_tie = |of: &ShownBallot| of.outcome() == Outcome::Tie;
         let mut text = match holding.len() {
-            0 if that(is_decidable).next().is_none() => format!(
+            0 if is_all(Why::NobodyLeans) && self.preferences.shown.iter().all(is_tie) => {
+                format!("All {} were \u{201c}no preference\u{201d}.", counted(given, "answer"))
+            }
+            0 if is_all(Why::NobodyLeans) => "Nobody leans one way or the other over all answers.".into(),
+            0 if undecidable && self.scale().is_some() => {
+                "For a test of each pair alone, too few people were asked.".into()
+            }
+            0 if undecidable => format!(
                 "No preference could be shown: {} gave {}, and no outcome of so few is significant.",
                 people(participants(&self.preferences.shown)),
-                counted(self.preferences.shown.len(), "answer")
+                counted(given, "answer")
             ),
+            0 if is_all(Why::Side) => String::new(),
             0 if !equal.is_empty() => String::new(),
             0 => "No preference over all answers was shown.".into(),
             held if own.len() > MANY => {
@@ -88,6 +102,12 @@ impl Told<'_, '_> {
         Some(text.trim().to_owned())
     }
 
+    /// Where the scale shows a difference and no test of a pair does, because people gave different numbers of answers.
+    fn weights(&self) -> Option<String> {
+        let none = !self.whole().iter().any(|(_, of)| matches!(of, Verdict::Holds { .. }));
+        (none && self.scale().is_some() && answer_unequally(&self.preferences.shown)).then(|| WEIGHTS.into())
+    }
+
     /// The scale with the most items.
     fn scale(&self) -> Option<String> {
         let own = self.all().iter().filter_map(|of| match (of.about, &of.verdict) {
@@ -96,7 +116,12 @@ impl Told<'_, '_> {
         });
         let (place, held, of) = own.max_by_key(|&(_, _, of)| of)?;
         let items = self.preferences.scales[place].group.items.len();
-        Some(format!("On one scale of {}, {held} of {of} differences hold.", counted(items, "item")))
+        let holds = if held == 1 { "holds" } else { "hold" };
+        Some(format!(
+            "On one scale of {}, {held} of {} {holds}.",
+            counted(items, "item"),
+            counted(of, "difference")
+        ))
     }
 
     fn objects(&self) -> Option<String> {
@@ -131,7 +156,8 @@ impl Told<'_, '_> {
             parts.push((on, text));
         }
         let (_, first) = parts.first()?;
-        if parts.iter().all(|(_, text)| text == first) {
+        // Over all objects, and on each of them.
+        if parts.len() == 1 + study.file.objects.len() && parts.iter().all(|(_, text)| text == first) {
             return Some(format!("Most liked on every object: {first}."));
         }
         let said: Vec<String> = parts.iter().map(|(on, text)| format!("Most liked {on}: {text}.")).collect();
@@ -140,8 +166,18 @@ impl Told<'_, '_> {
 
     fn side(&self) -> Option<String> {
         let found = self.conclusions().about(About::Side)?;
-        let text = "People favour a side. Whoever answers by the side hides what they prefer.";
-        found.holds().then(|| text.into())
+        if !found.holds() {
+            return None;
+        }
+        let size = side_share(self.preferences).map_or(String::new(), |(side, share)| {
+            format!(": {} of the decided answers went {side}", percent(share))
+        });
+        let is_hidden = self.all().iter().any(|of| of.verdict == Verdict::NotJudged(Why::Side));
+        let so = match is_hidden {
+            true => "No pair was shown on both sides, so the side may have made every preference.",
+            false => "Whoever answers by the side hides what they prefer.",
+        };
+        Some(format!("People favour a side{size}. {so}"))
     }
 
     fn spread(&self) -> Option<String> {
@@ -151,10 +187,12 @@ impl Told<'_, '_> {
             true => " That is more than any two items differ by on average.",
             false => "",
         };
+        let size = match spread.of.is_bounded() {
+            true => format!("{} log-odds ({})", number(spread.of.sd, 1), interval(spread.of.interval, 1)),
+            false => format!("at least {} log-odds", number(spread.of.interval.low, 1)),
+        };
         Some(format!(
-            "People differ in taste. The difference of two items has a standard deviation between people of {} log-odds ({}).{more}",
-            number(spread.of.sd, 1),
-            interval(spread.of.interval, 1)
+            "People differ in taste. The difference of two items has a standard deviation between people of {size}.{more}"
         ))
     }
 
@@ -236,6 +274,14 @@ fn best_at(results: &Results<'_>, goal: Goal) -> Option<String> {
     };
     let parts: Vec<String> = parts.iter().map(part).collect();
     (!parts.is_empty()).then(|| format!("{}: {}.", capital(wants::words(goal).heading), parts.join("; ")))
+}
+
+/// The side that was chosen more often, and its share of the decided answers.
+pub(crate) fn side_share(preferences: &Preferences<'_>) -> Option<(&'static str, f64)> {
+    let count = |outcome| preferences.shown.iter().filter(|of| of.outcome() == outcome).count() as f64;
+    let [left, right] = [Outcome::Left, Outcome::Right].map(count);
+    let (side, more) = if left >= right { ("left", left) } else { ("right", right) };
+    (left + right > 0.0).then(|| (side, more / (left + right)))
 }
 
 /// A sentence each, of so many as are named.

@@ -1,6 +1,6 @@
 //! What the models say: all items on one scale, and how well the models fit.
 
-use super::evidence::Evidence;
+use super::evidence::{Evidence, answer_unequally};
 use super::told::named;
 use crate::standing::Standing;
 use crate::statement::{Block, Finding};
@@ -8,6 +8,10 @@ use crate::words::{counted, list, number, p};
 use isostudy_inference::conclusions::{About, Conclusions, Verdict, Why};
 use isostudy_inference::scale::GroupScale;
 use isostudy_statistics::{Difference, Goodness, Model};
+
+/// Why a scale and a test of the same two may differ.
+pub(super) const WEIGHTS: &str = "People gave different numbers of answers. A worth counts every answer alike, and a test counts every \
+                                 person alike, so the two may differ.";
 
 /// Scales told at most; the tables have all.
 const MOST: usize = 12;
@@ -25,6 +29,9 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
     if scales.len() > MOST {
         let text = format!("The table of scales has {} more groups.", scales.len() - MOST);
         found.push(Finding::new(Standing::Noted, text));
+    }
+    if evidence.scales.iter().any(|of| of.scale.is_ok()) && answer_unequally(evidence.shown) {
+        found.push(Finding::new(Standing::Noted, WEIGHTS));
     }
     found.extend(misfits(evidence, level));
     found.into_iter().map(Block::Finding).collect()

@@ -2,6 +2,7 @@
 
 use crate::budgets::budgets;
 use crate::tables::design::{method_columns, with_factors};
+use crate::wants::busy;
 use isostudy_design::record::{MeshRecord, PeakMemory, Purpose};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, discard_fraction, known};
@@ -235,6 +236,7 @@ pub fn of_objects(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<
                 "A program does not tell its stages: all its work stands as geometry, normals included.";
             table.notes.push(told.into());
         }
+        table.notes.extend(busy(inputs));
     }
     table.notes.push(
         "Discarded, as published, counts some triangles twice; discarded is the true number. The aspect ratio is \

@@ -68,7 +68,7 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick
     let apart = inputs.study.methods.iter().filter_map(|of| Some((of.id, of.apart.as_ref()?)));
     table.notes.extend(apart.map(|(id, why)| format!("No choice names {id}: {why}.")));
     table.notes.extend(busy(inputs));
-    table.notes.push(conditions(inputs, objects));
+    table.notes.extend(conditions(inputs, objects));
     table
 }
 
@@ -81,21 +81,40 @@ fn decision(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pic
     let mut table = Columns::over(picks)
         .column("want", "You want", |pick| Cell::text(words(pick.want.goal).phrase))
         .column("objects", "On", |pick| Cell::text(on(pick)))
-        .column("take", "Take", |pick| Cell::text(format!("{}: {}", pick.method.id, pick.method.label)))
+        .column("take", "Take", |pick| Cell::text(take(pick)))
         .column("why", "Why", |pick| Cell::text(why(inputs.bench, pick)))
-        .column("cost", "What it costs", |pick| Cell::text(cost(pick)))
+        .column("cost", "What it costs", |pick| Cell::text(cost(pick, busy(inputs).is_some())))
         .into_table("decision", "Which method to take");
     if !picks.is_empty() {
-        table.notes.push(
-            "The costs are beside the least of all methods with the object's own cubes. In the row \u{201c}as many triangles\u{201d} it is \
-             beside the least of those."
-                .into(),
-        );
+        let mut note =
+            "Costs are relative to the least of all methods with the object's own cubes.".to_owned();
+        if picks.iter().any(|pick| pick.want.goal == Goal::ClosestPerTriangle) {
+            note.push_str(" Those of \u{201c}as many triangles\u{201d} are relative to the least of the methods with as many.");
+        }
+        if picks.iter().any(|pick| pick.on.iter().any(|best| !best.alike.is_empty())) {
+            note.push_str(" Where a row names several methods, they are not distinguished. Numbers and costs are those of the first.");
+        }
+        table.notes.push(note);
     }
     table
 }
 
-/// The best's numbers, the next's, and whose interval meets it.
+/// The method, or all that are not distinguished: those of every object of the row, then those of some.
+fn take(pick: &Pick<'_>) -> String {
+    let id = pick.method.id.to_string();
+    let [everywhere, somewhere] = alike(pick);
+    if everywhere.is_empty() && somewhere.is_empty() {
+        return format!("{id}: {}", pick.method.label);
+    }
+    let all: Vec<String> = std::iter::once(id).chain(everywhere).collect();
+    let text = all.join(" = ");
+    match somewhere.is_empty() {
+        true => text,
+        false => format!("{text}; on some = {}", somewhere.join(", ")),
+    }
+}
+
+/// The best's numbers and the next's.
 fn why(run: Option<&BenchRun>, pick: &Pick<'_>) -> String {
     let range = |values: &mut dyn Iterator<Item = Estimate>| -> String {
         words(pick.want.goal).says.replace("{}", &ranged(&values.map(|of| of.value).collect::<Vec<_>>()))
@@ -115,21 +134,10 @@ fn why(run: Option<&BenchRun>, pick: &Pick<'_>) -> String {
     if let Some((of, _)) = run.filter(|_| pick.want.goal.is_of_times()).map(noise) {
         text.push_str(&format!("; noise: {}", percents(of)));
     }
-    let [everywhere, somewhere] = alike(pick);
-    match (everywhere.is_empty(), somewhere.is_empty()) {
-        (true, true) => {}
-        (false, true) => text.push_str(&format!(". Not distinguished from {}", list(&everywhere))),
-        (true, false) => text.push_str(&format!(". On some not distinguished from {}", list(&somewhere))),
-        (false, false) => text.push_str(&format!(
-            ". Not distinguished from {}; on some, nor from {}",
-            list(&everywhere),
-            list(&somewhere)
-        )),
-    }
     text
 }
 
-/// The codes of those that were not told apart from the best on each of its objects, and on some.
+/// The codes of those that are not distinguished from the best on each of its objects, and on some.
 fn alike(pick: &Pick<'_>) -> [Vec<String>; 2] {
     let mut found: Vec<(MethodId, usize)> = Vec::new();
     for id in pick.on.iter().flat_map(|best| &best.alike) {
@@ -145,8 +153,8 @@ fn alike(pick: &Pick<'_>) -> [Vec<String>; 2] {
     [codes(&|times| times == all), codes(&|times| times < all)]
 }
 
-/// What is more than the least of those compared, and what is wrong with the mesh.
-fn cost(pick: &Pick<'_>) -> String {
+/// What is more than the least of those compared, and what is wrong with the mesh. Times of a busy run are no price.
+fn cost(pick: &Pick<'_>, is_busy: bool) -> String {
     let mut parts = Vec::new();
     let mut factor = |values: Vec<f64>, of: &str| {
         if values.iter().any(|&value| value >= MORE) {
@@ -154,7 +162,9 @@ fn cost(pick: &Pick<'_>) -> String {
         }
     };
     let costs = || pick.on.iter().map(|best| &best.cost);
-    factor(costs().filter_map(|cost| cost.time).collect(), "times the shortest time");
+    if !is_busy {
+        factor(costs().filter_map(|cost| cost.time).collect(), "times the shortest time");
+    }
     factor(costs().map(|cost| cost.triangles).collect(), "times the fewest triangles");
     factor(costs().filter_map(|cost| cost.error).collect(), "times the smallest error");
     factor(costs().filter_map(|cost| cost.samples).collect(), "times the fewest samples");
@@ -169,48 +179,35 @@ fn cost(pick: &Pick<'_>) -> String {
     if parts.is_empty() { "nothing of what is compared here".into() } else { parts.join("; ") }
 }
 
-/// How it was measured, and what is not compared.
-fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
-    let mut text = String::new();
-    if let Some(run) = inputs.bench.filter(|run| !run.samples.is_empty()) {
-        text.push_str(&format!(
-            "Time: median from the field to the mesh, without normals, over {}. ",
-            measured(run)
-        ));
-        let is = match noise(run) {
-            (of, true) => format!("As the A/A block tells, runs of one program differ by {}", percents(of)),
-            (of, false) => format!(
-                "No A/A block tells how much runs of one program differ, and {} is assumed",
-                percents(of)
-            ),
-        };
-        text.push_str(&format!("{is}: the interval of a time is wider by that. "));
-        if run.samples.iter().any(|sample| !sample.has_stages()) {
-            text.push_str("A program is given all samples, and their time is in its time. ");
-        }
-    }
-    text.push_str(
-        "Mean error: mean distance from mesh to isosurface or back, whichever is larger, in edges of the object's benchmark cubes. Sharp \
-         edges kept: mean distance from points of the object's sharp edges to the mesh, in that unit. Where the object ends at walls, their \
-         edges are among them. Each column takes the best in its quantity, whatever else it costs. Those with the \
-         object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. Two methods are not distinguished if their intervals at 95 % meet. \
-         Intervals of fewer than six times reach from the shortest to the longest. Of those not distinguished, and within 5 % of the \
-         best, one stands first. For a time it is the one with the smallest mean error, for an error the fastest. ",
-    );
+/// How it was measured, and what is not compared: a note for each quantity.
+fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> Vec<String> {
+    let mut notes = vec![
+        "Two methods are not distinguished if their intervals at 95 % meet. Of those, and within 5 % of the best, one stands first: for a \
+         time the one with the smallest mean error, for an error the fastest."
+            .into(),
+    ];
+    notes.extend(inputs.bench.filter(|run| !run.samples.is_empty()).map(of_times));
+    let mut errors = "Mean error: mean distance from mesh to isosurface or back, whichever is larger, in edges of the object's benchmark \
+                      cubes. Sharp edges kept: mean distance from the object's sharp edges to the mesh, in that unit."
+        .to_owned();
     if objects.iter().any(ObjectCandidates::has_least_error) {
-        text.push_str(&format!("A mean error below {LEAST_ERROR} counts as {LEAST_ERROR}. "));
+        errors.push_str(&format!(" A mean error below {LEAST_ERROR} counts as {LEAST_ERROR}."));
     }
+    notes.push(errors);
     if inputs.chunks.iter().any(|times| !times.edit_s.is_empty()) {
-        text.push_str("Chunks and edits are compared one by one: the interval of the median ratio has 1 in it, or not. ");
+        notes.push(
+            "Chunks and edits are compared one by one: the interval of the median ratio has 1 in it, or not."
+                .into(),
+        );
     }
     let is_liked = objects.iter().flat_map(|of| &of.candidates).any(|of| of.preference.is_some());
     if is_liked {
-        text.push_str(
-            "Most liked: the largest worth on one scale of this object's answers, with the side in the model where sides alternate. Others are not \
-             distinguished from it where neither the scale nor a question about both shows a difference. ",
+        notes.push(
+            "Most liked: the largest worth on one scale of the object's answers, with the side in the model where sides alternate. The \
+             table of likings has every two methods."
+                .into(),
         );
     }
-    text.push_str("Not compared: ");
     let mut not = vec!["other objects, resolutions and machines"];
     if !is_liked {
         not.push("what people like, since nobody's answers are here");
@@ -219,7 +216,33 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
         not.push("memory");
     }
     not.push("ease of use");
-    text.push_str(&format!("{}.", list(&not)));
+    let compared = match inputs.study.methods.iter().any(|method| method.budget.is_some()) {
+        true => {
+            "Methods with the object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. "
+        }
+        false => "",
+    };
+    notes.push(format!(
+        "{compared}Each column takes the best in its quantity, whatever else it costs. Not compared: {}.",
+        list(&not)
+    ));
+    notes
+}
+
+/// What a time is, and by how much runs differ.
+fn of_times(run: &BenchRun) -> String {
+    let mut text =
+        format!("Time: median from the field to the mesh, without normals, over {}. ", measured(run));
+    let is = match noise(run) {
+        (of, true) => format!("As the A/A block tells, runs of one program differ by {}", percents(of)),
+        (of, false) => {
+            format!("No A/A block tells how much runs of one program differ, and {} is assumed", percents(of))
+        }
+    };
+    text.push_str(&format!("{is}: the interval of a time is wider by that."));
+    if run.samples.iter().any(|sample| !sample.has_stages()) {
+        text.push_str(" A program is given all samples, and their time is in its time.");
+    }
     text
 }
 
