@@ -405,3 +405,84 @@ fn who_is_left_out_is_left_out_everywhere() {
         ]
     );
 }
+
+fn found(report: &Report) -> &str {
+    &report.summary.iter().find(|line| line.label == "Found").unwrap().text
+}
+
+/// Twelve answers of each person: every pair of trees in both orders, twice.
+fn twelve(
+    people: std::ops::Range<usize>,
+    answer: fn(usize, usize) -> Outcome,
+) -> Vec<(usize, usize, usize, Outcome)> {
+    let pairs = [(0, 1), (1, 2), (0, 2), (0, 1), (1, 2), (0, 2)];
+    let both = |person| pairs.into_iter().flat_map(move |(a, b)| [(person, a, b), (person, b, a)]);
+    people.flat_map(both).map(|(person, a, b)| (person, a, b, answer(a, b))).collect()
+}
+
+#[test]
+fn nobody_left_is_no_comparison() {
+    let report = report_of("Trees", &groups(&twelve(0..6, |_, _| Left)));
+    let said = found(&report);
+    assert!(
+        said.contains("All 6 people broke a rule of screening, so that nobody is left to compare them with.")
+            && !said.contains("Without"),
+        "{said}"
+    );
+    let checks = texts(&report, "bearing").join("\n");
+    assert!(
+        checks.contains("Nobody is left without them, so nothing is compared.")
+            && !checks.contains("decided otherwise"),
+        "{checks}"
+    );
+}
+
+#[test]
+fn what_turns_round_is_not_what_fewer_people_leave_undecided() {
+    // Who looks prefers the elm; forty press the left, where the oak stands most often.
+    let mut answers: Vec<_> =
+        (0..8).flat_map(|person| vec![(person, 0, 1, Right), (person, 1, 0, Left)]).collect();
+    for person in 8..48 {
+        answers.extend((0..11).map(|_| (person, 0, 1, Left)));
+        answers.push((person, 1, 0, Left));
+    }
+    let report = report_of("Trees", &groups(&answers));
+    let said = found(&report);
+    assert!(
+        said.contains(
+            "40 of 48 people broke a rule of screening. Without them, 1 of 1 contrast holds in the other direction."
+        ),
+        "{said}"
+    );
+    // Here everybody agrees, and six of the twelve are not needed for what they say.
+    let mut answers = twelve(0..4, |a, b| if a < b { Left } else { Right });
+    for person in 4..10 {
+        answers.extend((0..11).map(|_| (person, 0, 1, Left)));
+        answers.push((person, 1, 0, Left));
+    }
+    let report = report_of("Trees", &groups(&answers));
+    let said = found(&report);
+    assert!(
+        said.contains(
+            "6 of 10 people broke a rule of screening. Without them, 1 of 3 contrasts becomes undecided with fewer people."
+        ),
+        "{said}"
+    );
+    let checks = texts(&report, "bearing").join("\n");
+    assert!(checks.contains("1 of 3 tests is decided otherwise. Undecided with fewer people: "), "{checks}");
+}
+
+#[test]
+fn orders_that_few_saw_are_counted_and_not_denied() {
+    let report = report_of("Trees", &groups(&twelve(0..3, |a, b| if a < b { Left } else { Right })));
+    let text = report.to_markdown();
+    assert!(!text.contains("no pair was") && !text.contains("No pair was"), "{text}");
+    let checks = texts(&report, "bearing").join("\n");
+    assert!(
+        checks.contains(
+            "because 3 pairs in both orders were seen by 3 people, and fewer than four tell no spread"
+        ),
+        "{checks}"
+    );
+    assert!(text.contains("Sides: 3 of 3 pairs were shown in both orders."), "{text}");
+}

@@ -1,6 +1,7 @@
 //! Conclusions in sentences: what the abstract finds, and the last lines of `analyse`.
 
 use super::evidence::participants;
+use super::{checks, sides};
 use crate::wants;
 use crate::words::{capital, counted, interval, list, number, people, percent};
 use isostudy_design::Study;
@@ -140,8 +141,14 @@ impl Told<'_, '_> {
 
     fn side(&self) -> Option<String> {
         let found = self.conclusions().about(About::Side)?;
-        let text = "People favour a side. Whoever answers by the side hides what they prefer.";
-        found.holds().then(|| text.into())
+        match found.verdict {
+            Verdict::Holds { .. } => {
+                Some("People favour a side. Whoever answers by the side hides what they prefer.".into())
+            }
+            // The probe cannot look where no pair was seen in both orders on one object; the model may still tell.
+            Verdict::NotJudged(_) => sides::favoured(self.preferences.sides.as_ref()?),
+            _ => None,
+        }
     }
 
     fn spread(&self) -> Option<String> {
@@ -159,15 +166,8 @@ impl Told<'_, '_> {
     }
 
     fn screening(&self) -> Option<String> {
-        let found = self.conclusions().about(About::Screening)?;
-        let any = self.preferences.screened.iter().find(|of| of.rule.is_none())?;
-        let Verdict::Holds { held, of } = found.verdict else { return None };
-        Some(format!(
-            "Without the {} who broke a rule of screening, {held} of {} {} out otherwise.",
-            people(any.people.len()),
-            counted(of, "contrast"),
-            if held == 1 { "comes" } else { "come" }
-        ))
+        self.conclusions().about(About::Screening).filter(|of| of.verdict != Verdict::Undecided)?;
+        Some(checks::without_them(self.preferences.screened.first()?, self.preferences.respondents.len()))
     }
 
     fn prediction(&self) -> Option<String> {
