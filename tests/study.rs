@@ -468,6 +468,13 @@ fn analyse_prints_the_papers_numbers() {
     let fixture = Fixture::new();
     let said = fixture.succeed("analyse", &[]).stdout;
     assert!(said.contains("1.06"), "simple cubic, integrated, overall: {said}");
+    // At most thirty lines: short tables, the files of the others, one sentence, and the file to open.
+    let lines: Vec<&str> = said.lines().collect();
+    assert!(lines.len() <= 30, "{}: {said}", lines.len());
+    let [.., found, file] = lines[..] else { panic!("{said}") };
+    assert!(file.ends_with("report.html") && !found.trim_end_matches('.').contains(". "), "{said}");
+    assert!(found.starts_with("People preferred "), "{said}");
+    assert!(said.contains("preference_groups.md") && said.contains("12 rows: "), "{said}");
     let groups = std::fs::read_to_string(fixture.out().join("tables/preference_groups.csv")).unwrap();
     let mut lines = groups.lines();
     assert!(lines.next().unwrap().starts_with("group,configuration,wins,ties,answers,factor"));

@@ -190,7 +190,12 @@ fn wrong(study: &Study, truth: Truth, planted: &Planted, printed: &Printed) -> V
     }
     // The scale.
     if let Some(text) = printed.sentence("On one scale of ") {
-        let said = text.split_once(" items, ").unwrap().1.replace(" differences hold", "");
+        let said = text
+            .split_once(" items, ")
+            .unwrap()
+            .1
+            .replace(" differences holds", "")
+            .replace(" differences hold", "");
         let groups: Vec<String> = printed.rows("differences").map(|row| row["group"].clone()).collect();
         let counted = groups.iter().map(|group| {
             let own = || printed.rows("differences").filter(|row| row["group"] == *group);

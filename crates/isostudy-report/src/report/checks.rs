@@ -6,7 +6,7 @@ use super::{names, screens};
 use crate::evidence_of_probes;
 use crate::statement::Block;
 use crate::statement::{Finding, Standing};
-use crate::words::{counted, list, numbers, p as p_value, people};
+use crate::words::{counted, list, numbers, of_all, p as p_value, people};
 use isostudy_inference::Preferences;
 use isostudy_inference::audit::{Evidence as Seen, Finding as Probed, Report};
 use isostudy_inference::hypotheses::Hypothesis;
@@ -128,7 +128,6 @@ pub(super) fn without_them(of: &WithoutBreakers, all: usize) -> String {
         return format!("{who} broke a rule of screening, so that nobody is left to compare them with.");
     }
     let changes = of.changes();
-    let all_tests = counted(of.tests.len(), "contrast");
     let kinds = [
         (&changes.turned, ["holds", "hold"], "in the other direction"),
         (&changes.undecided, ["becomes", "become"], "undecided with fewer people"),
@@ -136,12 +135,14 @@ pub(super) fn without_them(of: &WithoutBreakers, all: usize) -> String {
     ];
     let mut parts: Vec<String> = Vec::new();
     for (tested, [one, more], how) in kinds.into_iter().filter(|(tested, ..)| !tested.is_empty()) {
-        let of = if parts.is_empty() { format!(" of {all_tests}") } else { String::new() };
-        let verb = if tested.len() == 1 { one } else { more };
-        parts.push(format!("{}{of} {verb} {how}", tested.len()));
+        let does = match parts.is_empty() {
+            true => of_all(tested.len(), of.tests.len(), "contrast", [one, more]),
+            false => format!("{} {}", tested.len(), if tested.len() == 1 { one } else { more }),
+        };
+        parts.push(format!("{does} {how}"));
     }
     if parts.is_empty() {
-        parts.push(format!("none of {all_tests} is decided otherwise"));
+        parts.push(format!("none of {} is decided otherwise", counted(of.tests.len(), "contrast")));
     }
     format!("{broken} of {} broke a rule of screening. Without them, {}.", people(all), list(&parts))
 }

@@ -486,3 +486,28 @@ fn orders_that_few_saw_are_counted_and_not_denied() {
     );
     assert!(text.contains("Sides: 3 of 3 pairs were shown in both orders."), "{text}");
 }
+
+#[test]
+fn answers_that_all_agree_name_nobody_and_say_why() {
+    let agreeing = |choice: fn(usize, usize) -> Outcome| {
+        let groups = groups(&twelve(0..6, choice));
+        found(&report_of("Trees", &groups)).to_owned()
+    };
+    let why = "The most liked is not named, because some items never won against the others and nothing bounds the worths.";
+    let always = agreeing(|a, b| if a < b { Left } else { Right });
+    assert!(always.contains(why), "{always}");
+    // Whoever stands left wins as often as not: there is a scale.
+    let sides = agreeing(|_, _| Left);
+    assert!(!sides.contains(why), "{sides}");
+}
+
+#[test]
+fn the_main_finding_is_one_sentence() {
+    let groups = groups(&twelve(0..6, |a, b| if a < b { Left } else { Right }));
+    let mut answers = Responses { sides_recorded: true, ..Responses::default() };
+    answers.items = groups[0].items.clone();
+    let preferences = Preferences::without_study(&answers, &groups, None);
+    let told = found_in_groups(&preferences).unwrap();
+    assert!(told.starts_with("People preferred ") && told.ends_with('.'), "{told}");
+    assert!(!told.trim_end_matches('.').contains(". "), "{told}");
+}

@@ -3,7 +3,7 @@
 use super::evidence::participants;
 use super::{checks, sides};
 use crate::wants;
-use crate::words::{capital, counted, interval, list, number, people, percent};
+use crate::words::{capital, counted, interval, list, number, of_all, people, percent};
 use isostudy_design::Study;
 use isostudy_inference::conclusions::{About, Conclusion, Conclusions, Verdict, Why};
 use isostudy_inference::decision::Goal;
@@ -32,6 +32,16 @@ pub(crate) fn sentences(preferences: &Preferences<'_>, results: Option<&Results<
     };
     let rest = [told.side(), told.spread(), told.screening(), told.prediction()];
     first.into_iter().chain(rest).flatten().collect()
+}
+
+/// The first sentence: the main finding.
+pub(crate) fn main_sentence(preferences: &Preferences<'_>, results: Option<&Results<'_>>) -> Option<String> {
+    let first = sentences(preferences, results).into_iter().next()?;
+    let is_end = |&(place, _): &(usize, &str)| {
+        first[place + 2..].starts_with(|letter: char| letter.is_uppercase() || letter.is_ascii_digit())
+    };
+    let end = first.match_indices(". ").find(is_end).map_or(first.len(), |(place, _)| place + 1);
+    Some(first[..end].to_owned())
 }
 
 struct Told<'a, 'b> {
@@ -97,7 +107,8 @@ impl Told<'_, '_> {
         });
         let (place, held, of) = own.max_by_key(|&(_, _, of)| of)?;
         let items = self.preferences.scales[place].group.items.len();
-        Some(format!("On one scale of {}, {held} of {of} differences hold.", counted(items, "item")))
+        let differences = of_all(held, of, "difference", ["holds", "hold"]);
+        Some(format!("On one scale of {}, {differences}.", counted(items, "item")))
     }
 
     fn objects(&self) -> Option<String> {
@@ -112,6 +123,21 @@ impl Told<'_, '_> {
 
     /// Of a study over all objects and on each; else of the scale with the most answers.
     fn most_liked(&self) -> Option<String> {
+        self.named_most_liked().or_else(|| self.without_bounds())
+    }
+
+    /// Why nobody is called the most liked where answers agree too well.
+    fn without_bounds(&self) -> Option<String> {
+        let is_unbounded = |of: &&Conclusion| {
+            matches!(of.about, About::MostLiked(_) | About::Scale(_))
+                && of.verdict == Verdict::NotJudged(Why::Separated)
+        };
+        self.all().iter().find(is_unbounded)?;
+        let text = "The most liked is not named, because some items never won against the others and nothing bounds the worths.";
+        Some(text.into())
+    }
+
+    fn named_most_liked(&self) -> Option<String> {
         let Some(results) = self.results else {
             let tops = self.all().iter().filter_map(|of| match of.about {
                 About::Top(place) => Some((self.preferences.scales[place].group, &of.verdict)),
