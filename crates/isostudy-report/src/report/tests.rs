@@ -503,7 +503,7 @@ fn answers_that_all_agree_name_nobody_and_say_why() {
 
 #[test]
 fn the_main_finding_is_one_sentence() {
-    let groups = groups(&twelve(0..6, |a, b| if a < b { Left } else { Right }));
+    let groups = groups(&twelve(0..12, |a, b| if a < b { Left } else { Right }));
     let mut answers = Responses { sides_recorded: true, ..Responses::default() };
     answers.items = groups[0].items.clone();
     let preferences = Preferences::without_study(&answers, &groups, None);
