@@ -58,8 +58,8 @@ fn choice(outcome: Outcome) -> Choice {
     }
 }
 
-/// The report of these groups' answers, which are about one object.
-fn report_of(title: &str, groups: &[BallotGroup]) -> Report {
+/// The answers of these groups, which are about one object.
+fn responses(groups: &[BallotGroup]) -> Responses {
     let mut answers = Responses { sides_recorded: true, ..Responses::default() };
     for group in groups {
         answers.items.extend(group.items.iter().cloned());
@@ -73,6 +73,12 @@ fn report_of(title: &str, groups: &[BallotGroup]) -> Report {
             answers.answers.push(Answer::new(person, question, sides, choice(ballot.outcome())));
         }
     }
+    answers
+}
+
+/// The report of these groups' answers.
+fn report_of(title: &str, groups: &[BallotGroup]) -> Report {
+    let answers = responses(groups);
     let preferences = Preferences::without_study(&answers, groups, None);
     report_of_groups(title, &preferences, &[], &[])
 }
@@ -504,8 +510,7 @@ fn answers_that_all_agree_name_nobody_and_say_why() {
 #[test]
 fn the_main_finding_is_one_sentence() {
     let groups = groups(&twelve(0..12, |a, b| if a < b { Left } else { Right }));
-    let mut answers = Responses { sides_recorded: true, ..Responses::default() };
-    answers.items = groups[0].items.clone();
+    let answers = responses(&groups);
     let preferences = Preferences::without_study(&answers, &groups, None);
     let told = found_in_groups(&preferences).unwrap();
     assert!(told.starts_with("People preferred ") && told.ends_with('.'), "{told}");
