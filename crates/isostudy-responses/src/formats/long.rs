@@ -38,7 +38,8 @@ fn missing(header: &[String]) -> Vec<&'static str> {
     let has = |name| has(header, name);
     let sides = has("left") && has("right");
     let mut missing = Vec::new();
-    if !has("participant") && !(has("count") && sides) {
+    let names_people = has("participant") || (has("count") && sides);
+    if !names_people {
         missing.push("participant");
     }
     if !has("question") && !sides {
