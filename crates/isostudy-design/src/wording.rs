@@ -58,7 +58,8 @@ pub fn plainly(message: &str) -> String {
         let meant = unknown(&line).and_then(|(word, known)| nearest(word, known));
         said.push(match meant {
             Some(other) => line.replacen(", expected", &format!("; did you mean {other}? Expected"), 1),
-            None => line.replacen("`, expected", "`. Expected", usize::from(unknown(&line).is_some())),
+            None if line.starts_with("unknown variant `") => line.replacen("`, expected", "`. Expected", 1),
+            None => line,
         });
     }
     said.iter().map(|line| unknown_word(line)).collect::<Vec<_>>().join("\n")
