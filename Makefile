@@ -50,6 +50,7 @@ figures: bunny ## draw tables, figures and index.html again from the results tha
 
 check: ## formatting, lints, licences, the English of README and docs, and that nothing is built twice
 	scripts/check-words.py
+	scripts/published_links.py --test
 	scripts/check-one-build.py
 	cargo fmt --all --check
 	scripts/draw-house.py --check

@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # Holds the tables of results/published against a run of `isostudy study configs/paper.toml` in results/paper (or the folder that
-# is named), times aside: columns of seconds, their shares, and claims about time. Ends with 1 if one differs.
+# is named), times aside: columns of seconds, their shares, and claims about time. Ends with 1 if one differs, or if the published report
+# links a file that is not there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 FROM=${1:-results/paper}
+dead=$(python3 scripts/published_links.py results/published)
+[ -z "$dead" ] || { echo "results/published/report.md: links what is not there: $dead" >&2; exit 1; }
 python3 - results/published/tables "$FROM/tables" <<'PY'
 import csv, pathlib, sys
 published, fresh = map(pathlib.Path, sys.argv[1:])

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renews results/published from results/paper: tables, the first part of the report, six figures, one turntable.
+# Renews results/published from results/paper: tables, the first part of the report, six figures and those that it links, one turntable.
 # Run `isostudy study configs/paper.toml` first. Needs Python with Pillow. An argument names another folder of results.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -17,6 +17,13 @@ for name in $TABLES; do cp "$FROM/tables/$name.csv" "$TO/tables/"; done
 for name in $FIGURES; do cp "$FROM/figures/$name.svg" "$TO/figures/"; done
 # Up to the results one by one.
 awk '/^## How much each is liked/ { exit } { print }' "$FROM/report.md" >"$TO/report.md"
+# What that part links is published with it.
+python3 scripts/published_links.py "$TO" | while read -r link; do
+    mkdir -p "$(dirname "$TO/$link")"
+    cp "$FROM/$link" "$TO/$link"
+done
+dead=$(python3 scripts/published_links.py "$TO")
+[ -z "$dead" ] || { echo "$TO/report.md: links what is not there: $dead" >&2; exit 1; }
 gif=$(awk -F, -v id="$TURNTABLE" '$3 == id && $2 == "" { print $1 }' "$FROM/key/stimuli.csv")
 # At half its size and every other frame: the whole would be larger than all the rest.
 python3 - "$FROM/$gif" "$TO/turntable_$TURNTABLE.gif" <<'PY'

@@ -110,4 +110,14 @@ fn football_with_home_advantage_as_gnm_has_it() {
         near(got, want, 1e-11);
     }
     assert_eq!((model("davidson", "remark"), model("davidson", "penalised")), ("", "no"));
+    // The file names no object, so that each match is one of its own: the probe cannot look, and the model can.
+    let report = std::fs::read_to_string(out.join("report.md")).unwrap();
+    assert!(!report.contains("no pair was seen in both orders of sides"), "{report}");
+    for said in [
+        "190 pairs were seen in both orders, but each order in a question or on an object of its own",
+        "190 of 190 pairs were shown in both orders, so a bonus for the left side can be estimated",
+        "Whatever stood there, the left side was favoured by 0.61 (0.35 to 0.87) log-odds",
+    ] {
+        assert!(report.contains(said), "{said}: {report}");
+    }
 }

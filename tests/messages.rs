@@ -51,7 +51,7 @@ fn comparisons() -> String {
 }
 
 /// Passages of the study file that `isostudy new` writes, and what somebody may make of them.
-const STUDY: [(&str, &str); 17] = [
+const STUDY: [(&str, &str); 18] = [
     (
         "kind = \"tetrahedra\", arrangement = \"body-centred\", clustering = \"integrated\" }",
         "kind = \"mc\" }",
@@ -69,6 +69,7 @@ const STUDY: [(&str, &str); 17] = [
     ("seed = 2 }", "sead = 2 }"),
     ("seed = 2 }", "seed = -2 }"),
     ("kind = \"formula\", text", "kind = \"formla\", text"),
+    ("kind = \"formula\", text", "kind = \"mc\", text"),
     ("benchmark_spacing = 0.05", "benchmark_spacing = 0.0005"),
     ("isovalue = 0.0", "isovalue = 9.0"),
     ("right = \"torus_bi-relaxed\"", "right = \"torus_bi-relax\""),

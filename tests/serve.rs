@@ -342,6 +342,14 @@ fn a_download_brings_no_formula() {
     }
     let Run { code, stderr: said, .. } = collect(Path::new("/dev/null"));
     assert!(code == Some(2) && said == "isostudy: /dev/null: not a file\n", "{said}");
+    // A folder of downloads gives what its files give, but for hidden ones.
+    let folder = fixture.folder().join("downloads");
+    std::fs::create_dir(&folder).unwrap();
+    assert!(collect(&folder).stderr.contains("downloads: no files in it"));
+    std::fs::copy(&download, folder.join("one.csv")).unwrap();
+    std::fs::write(folder.join(".DS_Store"), "x").unwrap();
+    assert_eq!(collect(&folder).code, Some(0));
+    assert_eq!(std::fs::read_to_string(&out).unwrap(), text);
 }
 
 /// Between the first answer and `analyse`, the page and the command say that answers are there, and what reads them.

@@ -43,7 +43,8 @@ fn a_study_makes_everything_once_and_then_nothing() {
 /// Every file but those with times, against SHA-256 of what the program made on 2026-11-22 (commit e343f5e), before methods were
 /// anything but two letters. A change that is meant renews `golden/quick.sha256` from what this prints, and says so in the changelog:
 /// so far records of meshes, digests of cameras, intervals of alpha, the note under what predicts preference, triangles that pass
-/// through each other, distances from sharp edges, p over methods in what predicts preference, the caption of contrasts,
+/// through each other, distances from sharp edges, p over methods in what predicts preference, the captions of contrasts
+/// and of shares of showings,
 /// and figures: their colours on dark pages, one more of each for narrow screens, and an overview.
 ///
 /// It says that nothing changed, not that anything is right. That is for other tests: tables of answers against `isostudy-oracle` and
@@ -468,6 +469,13 @@ fn analyse_prints_the_papers_numbers() {
     let fixture = Fixture::new();
     let said = fixture.succeed("analyse", &[]).stdout;
     assert!(said.contains("1.06"), "simple cubic, integrated, overall: {said}");
+    // At most thirty lines: short tables, the files of the others, one sentence, and the file to open.
+    let lines: Vec<&str> = said.lines().collect();
+    assert!(lines.len() <= 30, "{}: {said}", lines.len());
+    let [.., found, file] = lines[..] else { panic!("{said}") };
+    assert!(file.ends_with("report.html") && !found.trim_end_matches('.').contains(". "), "{said}");
+    assert!(found.starts_with("People preferred "), "{said}");
+    assert!(said.contains("preference_groups.md") && said.contains("12 rows: "), "{said}");
     let groups = std::fs::read_to_string(fixture.out().join("tables/preference_groups.csv")).unwrap();
     let mut lines = groups.lines();
     assert!(lines.next().unwrap().starts_with("group,configuration,wins,ties,answers,factor"));

@@ -380,7 +380,7 @@ fn what_cannot_be_done_is_said_in_one_line() {
         (ball(&["-o", "a.ply", "--mesh", "b.ply"]), "cannot be used with"),
         (ball(&["-o", "a.ply", "--force"]), "cannot be used with"),
         (ball(&["-o", "a.ply", "--allow-open"]), "cannot be used with"),
-        (ball(&["-o", "a.ply", "--arrangement", "hexagonal"]), "unknown variant `hexagonal`"),
+        (ball(&["-o", "a.ply", "--arrangement", "hexagonal"]), "`hexagonal` is not known here"),
         (vec!["--field", "x +", BALL[2], "-o", "a.ply"], "--field 'x +': column 4: the end where a number"),
         (
             vec!["--field", "x^2 - 9", BALL[2], "-o", "a.ply"],

@@ -58,10 +58,19 @@ pub fn plainly(message: &str) -> String {
         let meant = unknown(&line).and_then(|(word, known)| nearest(word, known));
         said.push(match meant {
             Some(other) => line.replacen(", expected", &format!("; did you mean {other}? Expected"), 1),
+            None if line.starts_with("unknown variant `") => line.replacen("`, expected", "`. Expected", 1),
             None => line,
         });
     }
-    said.join("\n")
+    said.iter().map(|line| unknown_word(line)).collect::<Vec<_>>().join("\n")
+}
+
+/// ``unknown variant `x` `` is `` `x` is not known here ``.
+fn unknown_word(line: &str) -> String {
+    match line.strip_prefix("unknown variant `").and_then(|rest| rest.split_once('`')) {
+        Some((word, rest)) => format!("`{word}` is not known here{rest}"),
+        None => line.to_owned(),
+    }
 }
 
 /// The word that was not expected, and those that were.
@@ -177,7 +186,7 @@ mod tests {
         let said = plainly("3 | x\nunknown variant `flatt`, expected one of `smooth`, `flat`");
         assert_eq!(
             said,
-            "3 | x\nunknown variant `flatt`; did you mean flat? Expected one of `smooth`, `flat`"
+            "3 | x\n`flatt` is not known here; did you mean flat? Expected one of `smooth`, `flat`"
         );
         let said = plainly("unknown field `memory_gb`, expected `memory_gib`");
         assert!(said.ends_with("; did you mean memory_gib? Expected `memory_gib`"), "{said}");

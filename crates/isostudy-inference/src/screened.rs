@@ -35,6 +35,49 @@ pub struct WithoutBreakers {
     pub tests: Vec<(Hypothesis, Option<Hypothesis>)>,
 }
 
+/// The tests that are decided otherwise without those who broke a rule.
+#[derive(Debug, Clone, Default)]
+pub struct Changes<'a> {
+    /// They hold in the other direction.
+    pub turned: Vec<&'a Hypothesis>,
+    /// They hold with everybody alone. Fewer people show less, so that this alone is no sign of carelessness.
+    pub undecided: Vec<&'a Hypothesis>,
+    /// They hold without those people alone.
+    pub decided: Vec<&'a Hypothesis>,
+}
+
+impl Changes<'_> {
+    /// How many there are.
+    pub fn number(&self) -> usize {
+        self.turned.len() + self.undecided.len() + self.decided.len()
+    }
+}
+
+impl WithoutBreakers {
+    /// Whether anybody is left whose answers can be tested.
+    pub fn leaves_somebody(&self) -> bool {
+        self.tests.iter().any(|(_, without)| without.is_some())
+    }
+
+    /// What is decided otherwise; nothing where nobody is left.
+    pub fn changes(&self) -> Changes<'_> {
+        let mut changes = Changes::default();
+        if !self.leaves_somebody() {
+            return changes;
+        }
+        for (with, without) in &self.tests {
+            let without = without.as_ref().filter(|of| of.differs());
+            match (with.differs(), without) {
+                (true, Some(other)) if with.test.mean * other.test.mean < 0.0 => changes.turned.push(with),
+                (true, None) => changes.undecided.push(with),
+                (false, Some(_)) => changes.decided.push(with),
+                (true, Some(_)) | (false, None) => {}
+            }
+        }
+        changes
+    }
+}
+
 /// Every contrast of a study with everybody, those included whom the study leaves out; single questions are left out.
 pub fn of_study(study: &Study, answers: &Answered, respondents: &[Respondent]) -> Vec<WithoutBreakers> {
     let everyone = match answers.excluded.is_empty() {

@@ -69,7 +69,7 @@ pub(super) fn findings(numbers: &Numbers<'_>, claims: &[(&Claim, claims::Finding
             counted(run.iterations as usize, "round"),
             run.target.name,
             if run.aa_samples.is_empty() {
-                "; this run has no A/A block to know that noise by (`isostudy bench` has), so costs are noted and not judged"
+                "; this run has no A/A block to know that noise by (`isostudy bench` has), and 5 % is assumed"
             } else {
                 ""
             }
@@ -129,8 +129,9 @@ fn both(of: &Change) -> String {
     let published = of.published.map_or("not published".into(), |p| format!("{} published", change(p)));
     let within =
         of.interval.map_or("too few rounds for an interval".into(), |i| format!("{} %", interval(i, 2)));
-    let noise = of.noise.map_or("noise not known".into(), |n| format!("noise up to {} points", number(n, 2)));
-    format!("{published}, {} here ({within}; {noise})", change(of.ours))
+    let assumed = if of.is_assumed { ", assumed" } else { "" };
+    let noise = number(of.noise, 2);
+    format!("{published}, {} here ({within}; noise up to {noise} points{assumed})", change(of.ours))
 }
 
 /// Percentage points by which a count is out if it takes triangles twice.
@@ -334,6 +335,20 @@ mod tests {
     use isostudy_inference::inputs::Inputs;
 
     #[test]
+    fn costs_beyond_an_assumed_noise_hold() {
+        let mut everything = Everything::of(fixture::study());
+        everything.bench = fixture::bench_of(&everything.study, 9);
+        assert!(everything.bench.aa_samples.is_empty());
+        let blocks = of(&everything.inputs());
+        let start = "Edge collapse against no clustering, geometry pass";
+        let is_it = |block: &&Block| matches!(block, Block::Finding(of) if of.text.starts_with(start));
+        let Some(Block::Finding(found)) = blocks.iter().find(is_it) else { panic!("{start}") };
+        assert!(found.standing == Standing::Holds && found.text.contains(" points, assumed)"), "{found:?}");
+        let is_said = |block: &Block| matches!(block, Block::Text(of) if of.contains("and 5 % is assumed"));
+        assert!(blocks.iter().any(is_said));
+    }
+
+    #[test]
     fn the_published_conclusions_are_held_against_numbers() {
         let mut everything = Everything::of(fixture::study());
         for mesh in &mut everything.meshes {
@@ -365,10 +380,10 @@ mod tests {
             ("The body-centred lattice against the simple cubic one, vertex pass", "+124.82 %"),
             ("The body-centred lattice against the simple cubic one, geometry pass", "+48.67 %"),
         ] {
-            has(start, &[&format!("pass: {published}"), "noise not known"]);
+            has(start, &[&format!("pass: {published}"), " points, assumed)"]);
         }
         let noted = "Edge collapse against no clustering, geometry pass";
-        assert_eq!(of(noted).0, Standing::Noted, "no A/A block, no verdict");
+        assert_eq!(of(noted).0, Standing::Noted, "five rounds have no interval");
         has(
             "The body-centred lattice is said to give 38.96 % more triangles",
             &[

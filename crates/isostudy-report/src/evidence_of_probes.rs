@@ -1,10 +1,10 @@
 //! What probes saw, in words: for the table of probes and for the report alike.
 
-use crate::words::{counted, number};
+use crate::words::{self, counted, number};
 use isostudy_inference::audit::Evidence;
 use isostudy_inference::audit::evidence::{
-    Agreement, Contradiction, Copies, Difference, Differences, Key, Orders, Pulls, Reason, Remark,
-    SameAnswers, SameTimes, Separations, TimeTwins, TurnedPair, WrongFile,
+    Agreement, BothOrders, Contradiction, Copies, Difference, Differences, Key, Orders, Pulls, Reason,
+    Remark, SameAnswers, SameTimes, Separations, TimeTwins, TurnedPair, WrongFile,
 };
 
 /// What a probe saw, or why nothing can be seen.
@@ -22,27 +22,54 @@ pub(crate) fn evidence(of: &Evidence) -> String {
 
 const FEW_PAIRS: &str = "fewer than four pairs were seen in both orders of sides";
 
+/// What was seen in both orders, and why it does not do.
+fn both_orders(BothOrders { pairs, people, apart }: BothOrders) -> String {
+    match (pairs, apart) {
+        (0, 0) => "no pair was seen in both orders".into(),
+        (0, apart) => format!("no pair was seen in both orders on one object: {}", seen_apart(apart)),
+        _ => format!(
+            "{} in both orders {} seen by {}, and fewer than four tell no spread",
+            counted(pairs, "pair"),
+            if pairs == 1 { "was" } else { "were" },
+            words::people(people)
+        ),
+    }
+}
+
+/// That orders are apart. Where no object is named, each question counts as one.
+fn seen_apart(apart: usize) -> String {
+    let were = if apart == 1 { "was" } else { "were" };
+    format!(
+        "{} {were} seen in both orders, but each order in a question or on an object of its own",
+        counted(apart, "pair")
+    )
+}
+
 /// Why nothing can be seen.
 pub(crate) fn reason(why: &Reason) -> String {
     match why {
         Reason::NoSides => "the file does not say which item was on which side".into(),
-        Reason::NoPairInBothOrders => {
+        Reason::FewInBothOrders(BothOrders { pairs: 0, apart: 0, .. }) => {
             "no pair was seen in both orders of sides and there are no controls: side goes with what was shown on it"
                 .into()
         }
-        Reason::FewControls(counts) => format!(
-            "too few people answered controls, and no pair was seen in both orders ({})",
-            controls(*counts)
-        ),
+        Reason::FewInBothOrders(seen) => format!("{}; there are no controls", both_orders(*seen)),
+        Reason::FewControls(counts, seen) => {
+            format!("too few people answered controls, and {} ({})", both_orders(*seen), controls(*counts))
+        }
         Reason::FewDeciders => {
             "fewer than five people decided ten questions on which the others have a majority".into()
         }
         Reason::FewRowsAlike => {
             "no five people answered the same ten questions on the same sides, and no times are recorded".into()
         }
-        Reason::FewPairsInBothOrders { remarks } => {
+        Reason::FewPairsInBothOrders { remarks, apart } => {
             let remarks: Vec<String> = remarks.iter().map(|of| format!("; {}", remark(of))).collect();
-            format!("{FEW_PAIRS}: a wrong key looks like a preference{}", remarks.concat())
+            let apart = match apart {
+                0 => String::new(),
+                _ => format!(" on one object ({})", seen_apart(*apart)),
+            };
+            format!("{FEW_PAIRS}{apart}: a wrong key looks like a preference{}", remarks.concat())
         }
         Reason::NoPairOnTwoObjects { pressing } => {
             let reason = "no two people were shown the same pair of items on more than one object";

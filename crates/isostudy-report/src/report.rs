@@ -126,14 +126,14 @@ pub fn report_of_groups(
     builder.finish(title.into(), &evidence, None, None)
 }
 
-/// What was found in a study's answers, a sentence each; empty without answers.
-pub fn found(results: &Results<'_>) -> Vec<String> {
-    results.preferences.as_ref().map_or_else(Vec::new, |of| told::sentences(of, Some(results)))
+/// What was found in a study's answers before all, in one sentence; `None` without answers.
+pub fn found(results: &Results<'_>) -> Option<String> {
+    told::main_sentence(results.preferences.as_ref()?, Some(results))
 }
 
-/// What was found in answers without a study, a sentence each.
-pub fn found_in_groups(preferences: &Preferences<'_>) -> Vec<String> {
-    told::sentences(preferences, None)
+/// The same of answers without a study.
+pub fn found_in_groups(preferences: &Preferences<'_>) -> Option<String> {
+    told::main_sentence(preferences, None)
 }
 
 /// What was asked of whom.

@@ -35,6 +35,12 @@ pub fn people(number: usize) -> String {
     if number == 1 { "1 person".into() } else { format!("{number} people") }
 }
 
+/// `0 of 1 contrast holds`, `1 of 3 contrasts holds`, `2 of 3 contrasts hold`: of so many things, how many do it.
+pub fn of_all(some: usize, all: usize, noun: &str, [one, more]: [&str; 2]) -> String {
+    let verb = if some == 1 || all == 1 { one } else { more };
+    format!("{some} of {} {verb}", counted(all, noun))
+}
+
 /// `26,144`.
 pub fn whole(count: u64) -> String {
     let digits = count.to_string();
@@ -110,6 +116,17 @@ mod tests {
         assert_eq!(against([1, 0, 5]), "1 answer against 5, none without preference");
         assert_eq!(percents(Interval { low: 0.661, high: 1.2 }), "66 to 100 %");
         assert_eq!(capital("über"), "Über");
+        let hold = |some, all| of_all(some, all, "contrast", ["holds", "hold"]);
+        assert_eq!(
+            [(0, 1), (1, 1), (0, 3), (1, 3), (2, 3)].map(|(some, all)| hold(some, all)),
+            [
+                "0 of 1 contrast holds",
+                "1 of 1 contrast holds",
+                "0 of 3 contrasts hold",
+                "1 of 3 contrasts holds",
+                "2 of 3 contrasts hold"
+            ]
+        );
         assert_eq!(
             (change(12.066), change(-1.96), change(-0.001)),
             ("+12.07 %".into(), "\u{2212}1.96 %".into(), "+0.00 %".into())

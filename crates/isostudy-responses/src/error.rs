@@ -1,7 +1,9 @@
 //! What may be wrong with a file of answers.
 
 use crate::address;
+use crate::choice::Choice;
 use crate::format::Format;
+use isostudy_design::wording::did_you_mean;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -90,7 +92,7 @@ pub enum Fault {
         "row 1: no known format: the header begins {header}. Known formats: {formats}; name one with --format or `format`"
     )]
     UnknownFormat {
-        /// The first cells.
+        /// The first cells, and what they lack where they are nearly a format's.
         header: String,
         /// Names of the formats.
         formats: String,
@@ -389,6 +391,7 @@ impl fmt::Display for UnknownCells<'_> {
         for (i, UnknownCell { row, column, question, raw }) in self.0.iter().take(SHOWN).enumerate() {
             let and = if i > 0 { "; " } else { "" };
             write!(f, "{and}row {row}, column {column} ({question}): \"{raw}\" is not an answer")?;
+            write!(f, "{}", did_you_mean(raw, Choice::ALL.map(Choice::name)))?;
         }
         if self.0.len() > SHOWN {
             write!(f, "; and {} more", number_of(self.0.len() - SHOWN, "cell"))?;
@@ -400,9 +403,14 @@ impl fmt::Display for UnknownCells<'_> {
             }
         }
         let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+        // A question ends with its mark.
+        let end = match self.0 {
+            [only] if !did_you_mean(&only.raw, Choice::ALL.map(Choice::name)).is_empty() => "",
+            _ => ".",
+        };
         write!(
             f,
-            ". Known: {}; declare what {} mean{} as `synonyms`, or `unknown = \"leave-out\"` to leave such cells out",
+            "{end} Known: {}; declare what {} mean{} as `synonyms`, or `unknown = \"leave-out\"` to leave such cells out",
             self.1,
             words.join(", "),
             if words.len() == 1 { "s" } else { "" }

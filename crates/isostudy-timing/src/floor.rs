@@ -26,6 +26,9 @@ const POOLED_DEGREES: f64 = 4.0;
 const NO_REFERENCE: &str =
     "no reference work on as many threads in both: whether the machine was as fast is not known";
 
+/// The logarithm of 1.05, by which runs of one program are taken to differ where no A/A block tells.
+pub const ASSUMED_NOISE: f64 = 0.048_790_164_169_432;
+
 /// Log-ratios that are no more than noise.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseFloor {

@@ -54,7 +54,7 @@ pub use brief::brief;
 pub use compare::{COMPARISON_SCHEMA, Comparison, Limits, Row, compare, would_tell};
 pub use counted::InstructionRow;
 pub use differences::{build_differences, machine_differences};
-pub use floor::NoiseFloor;
+pub use floor::{ASSUMED_NOISE, NoiseFloor};
 pub use gate::{Gate, GateRecord, GateResult, GateStatus};
 pub use outliers::{MAD_LIMIT, Outlier};
 pub use quiet::{BUSY, beside_other_work, warnings};

@@ -26,10 +26,10 @@ pub enum Evidence {
 pub enum Reason {
     /// Sides are not recorded.
     NoSides,
-    /// No pair was seen in both orders of sides, and there are no controls.
-    NoPairInBothOrders,
-    /// No pair was seen in both orders of sides, and of these answers to controls (left, none, right) there are too few people's.
-    FewControls([u64; 3]),
+    /// Pairs tell too little, and there are no controls.
+    FewInBothOrders(BothOrders),
+    /// Pairs tell too little, and of these answers to controls (left, none, right) there are too few people's.
+    FewControls([u64; 3], BothOrders),
     /// Too few people decided enough questions on which the others have a majority.
     FewDeciders,
     /// Too few people answered the same questions on the same sides, and no times are recorded.
@@ -38,6 +38,8 @@ pub enum Reason {
     FewPairsInBothOrders {
         /// What else is to be said of labels.
         remarks: Vec<Remark>,
+        /// Pairs of items that were seen in both orders, each order on an object of its own.
+        apart: usize,
     },
     /// No two people were shown the same pair of items on more than one object.
     NoPairOnTwoObjects {
@@ -48,6 +50,17 @@ pub enum Reason {
     NothingCompared,
     /// Nobody ever decided between two items.
     NothingDecided,
+}
+
+/// What was seen in both orders of sides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct BothOrders {
+    /// Pairs of items that were, on one object.
+    pub pairs: usize,
+    /// Who answered about those.
+    pub people: usize,
+    /// Pairs of items that were, but each order on an object of its own. Where no object is named, each question is one.
+    pub apart: usize,
 }
 
 /// How far answers go to one side, whatever it shows.

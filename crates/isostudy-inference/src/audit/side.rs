@@ -1,6 +1,6 @@
 //! Is one side chosen whatever it shows?
 
-use super::evidence::{Pull, Pulls, Reason};
+use super::evidence::{BothOrders, Pull, Pulls, Reason};
 use super::stimuli::{Stimuli, for_lower};
 use super::{ALARM, Audited, Evidence, Probe, Report};
 use isostudy_statistics::ScoreTest;
@@ -18,10 +18,14 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSe
     let controls = ScoreTest::of(controls.map(|b| (b.participant(), b.outcome().sign())));
     let mut seen = Pulls { pairs: None, controls: None };
     let mut p = Vec::new();
-    if let Some((pull, of)) = pull(audited, stimuli, suspects) {
-        seen.pairs = Some(pull);
-        p.push(of);
-    }
+    let both_orders = match pull(audited, stimuli, suspects) {
+        Ok((pull, of)) => {
+            seen.pairs = Some(pull);
+            p.push(of);
+            BothOrders::default()
+        }
+        Err(few) => few,
+    };
     if let (Some(counts), false) = (controls.counts, controls.participants() == 0) {
         seen.controls = Some(counts);
         // Fewer people could not show anything, whatever they chose.
@@ -31,7 +35,10 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSe
     }
     match p.len() {
         0 => {
-            let reason = seen.controls.map_or(Reason::NoPairInBothOrders, Reason::FewControls);
+            let reason = match seen.controls {
+                None => Reason::FewInBothOrders(both_orders),
+                Some(counts) => Reason::FewControls(counts, both_orders),
+            };
             Report::not_answerable(Probe::Side, reason)
         }
         n => {
@@ -41,11 +48,15 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSe
     }
 }
 
-/// The mean pull to the left and its p; `None` if no pair or fewer than four people can tell.
+/// The mean pull to the left and its p; what there is if no pair or fewer than four people can tell.
 ///
 /// A participant's score is the mean, over the answers, of (x - the stimulus's mean over both orders), counted for the
 /// left side. Two orders were fitted, hence m - 2 degrees of freedom.
-fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) -> Option<(Pull, f64)> {
+fn pull(
+    audited: &Audited<'_>,
+    stimuli: &Stimuli,
+    suspects: &BTreeSet<usize>,
+) -> Result<(Pull, f64), BothOrders> {
     let middles: BTreeMap<usize, f64> = stimuli
         .in_both_orders()
         .map(|(place, s)| (place, 0.5 * (s.orders[0].mean() + s.orders[1].mean())))
@@ -64,7 +75,7 @@ fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) ->
     }
     let scores: Vec<f64> = sums.into_iter().filter(|&(_, n)| n > 0.0).map(|(sum, n)| sum / n).collect();
     if scores.len() < 4 {
-        return None;
+        return Err(BothOrders { pairs: middles.len(), people: scores.len(), apart: stimuli.apart() });
     }
     let m = scores.len() as f64;
     let mean = scores.iter().sum::<f64>() / m;
@@ -77,5 +88,5 @@ fn pull(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSet<usize>) ->
     // People who do not differ tell no spread, and t is beyond all bounds: no p is below that of the exact sign-flip test of so many
     // who all lean one way.
     let p = p.max(2.0_f64.powi(1 - m as i32));
-    Some((Pull { pairs: middles.len(), mean }, p))
+    Ok((Pull { pairs: middles.len(), mean }, p))
 }

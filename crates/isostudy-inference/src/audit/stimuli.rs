@@ -74,6 +74,18 @@ impl Stimuli {
     pub(super) fn in_both_orders(&self) -> impl Iterator<Item = (usize, &Stimulus)> {
         self.all.iter().enumerate().filter(|(_, s)| s.orders.iter().all(|order| order.n() > 0))
     }
+
+    /// How many pairs of items were seen in both orders, but each order on an object of its own.
+    pub(super) fn apart(&self) -> usize {
+        let mut pairs: BTreeMap<(usize, usize), ([bool; 2], bool)> = BTreeMap::new();
+        for (&(_, lower, higher), &place) in &self.places {
+            let own = self.all[place].orders.map(|order| order.n() > 0);
+            let (seen, together) = pairs.entry((lower, higher)).or_default();
+            *together |= own == [true; 2];
+            *seen = [seen[0] || own[0], seen[1] || own[1]];
+        }
+        pairs.values().filter(|(seen, together)| *seen == [true; 2] && !together).count()
+    }
 }
 
 fn key(ballot: &ShownBallot, scenes: &[usize]) -> (usize, usize, usize) {

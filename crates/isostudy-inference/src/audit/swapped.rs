@@ -31,7 +31,7 @@ pub(super) fn probe(audited: &Audited<'_>, labels: Labels, stimuli: &Stimuli) ->
         Some(_) => Orders::Contradict(turned),
         None if looked => Orders::Few,
         None => {
-            let reason = Reason::FewPairsInBothOrders { remarks };
+            let reason = Reason::FewPairsInBothOrders { remarks, apart: stimuli.apart() };
             return (Report::not_answerable(Probe::SwappedKey, reason), suspects);
         }
     };

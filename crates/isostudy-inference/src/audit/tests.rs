@@ -43,7 +43,7 @@ fn the_papers_answers() {
     assert_eq!(reports.len(), Probe::ALL.len());
     let side = found(Probe::Side);
     assert_eq!(side.finding, Finding::NotAnswerable);
-    assert_eq!(side.evidence, Evidence::NotAnswerable(Reason::NoPairInBothOrders));
+    assert_eq!(side.evidence, Evidence::NotAnswerable(Reason::FewInBothOrders(BothOrders::default())));
     assert_eq!(found(Probe::SwappedKey).finding, Finding::NotAnswerable);
     let odd = found(Probe::OutlyingRespondent);
     assert_eq!(odd.finding, Finding::Found);

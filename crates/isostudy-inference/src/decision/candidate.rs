@@ -9,7 +9,7 @@ use isostudy_design::record::{BenchRun, Distribution, MeshRecord, Purpose, Store
 use isostudy_design::{ConfigurationId, Method, MethodId, Stage, Study};
 use isostudy_statistics::interval::LEVEL;
 use isostudy_statistics::median;
-use isostudy_timing::NoiseFloor;
+use isostudy_timing::{ASSUMED_NOISE, NoiseFloor};
 
 /// How many standard errors a mean may be off at 95 %.
 const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
@@ -17,9 +17,6 @@ const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
 /// The least error that is told apart, in cube edges. A method that is exact but for rounding would be a million times as good as the
 /// next, and an error of 0 has no place on a logarithmic axis.
 pub const LEAST_ERROR: f64 = 1e-4;
-
-/// The logarithm of 1.05, by which runs are taken to differ where no A/A block tells.
-const UNKNOWN_NOISE: f64 = 0.048_790_164_169_432;
 
 /// An object and the methods that can be taken for it, in the study's order.
 pub struct ObjectCandidates<'a> {
@@ -207,7 +204,7 @@ fn of_total(noise: Option<&NoiseFloor>, id: &ConfigurationId) -> Option<f64> {
 
 /// A time whose ends are farther apart by what runs differ by.
 fn beyond_noise(time: Estimate, noise: Option<f64>) -> Estimate {
-    let half = (noise.unwrap_or(UNKNOWN_NOISE) / 2.0).exp();
+    let half = (noise.unwrap_or(ASSUMED_NOISE) / 2.0).exp();
     Estimate { value: time.value, low: time.low / half, high: time.high * half }
 }
 
@@ -215,7 +212,7 @@ fn beyond_noise(time: Estimate, noise: Option<f64>) -> Estimate {
 /// A/A block tells it or it is assumed.
 pub fn noise(run: &BenchRun) -> ([f64; 2], bool) {
     let known = NoiseFloor::of(run).range(Stage::Total);
-    let (low, high) = known.unwrap_or((UNKNOWN_NOISE, UNKNOWN_NOISE));
+    let (low, high) = known.unwrap_or((ASSUMED_NOISE, ASSUMED_NOISE));
     ([low, high].map(|log| log.exp() - 1.0), known.is_some())
 }
 

@@ -351,17 +351,11 @@ fn objects(preferences: &Preferences<'_>) -> Vec<Conclusion> {
     depends.map(conclusion).collect()
 }
 
-/// Whether a contrast is decided otherwise without those who broke any rule.
+/// Whether a contrast is decided otherwise without those who broke any rule. Of one rule alone there is no other list.
 fn screening(preferences: &Preferences<'_>) -> Option<Conclusion> {
-    let any = preferences.screened.iter().find(|of| of.rule.is_none())?;
-    if any.people.is_empty() {
-        return None;
-    }
-    let changed = any
-        .tests
-        .iter()
-        .filter(|(with, without)| without.as_ref().is_none_or(|without| with.differs() != without.differs()));
-    let verdict = match changed.count() {
+    let any = preferences.screened.first()?;
+    let verdict = match any.changes().number() {
+        _ if !any.leaves_somebody() => Verdict::NotJudged(Why::TooFew),
         0 => Verdict::Undecided,
         held => Verdict::Holds { held, of: any.tests.len() },
     };

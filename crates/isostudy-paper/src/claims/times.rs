@@ -9,7 +9,7 @@ use isostudy_design::published::Claim;
 use isostudy_design::record::BenchRun;
 use isostudy_statistics::interval::{Interval, LEVEL};
 use isostudy_statistics::median;
-use isostudy_timing::NoiseFloor;
+use isostudy_timing::{ASSUMED_NOISE, NoiseFloor};
 
 const ALL: [Clustering; 3] = [Clustering::None, Integrated, EdgeCollapse];
 
@@ -45,8 +45,10 @@ pub(crate) struct Change {
     pub(crate) ours: f64,
     /// Of the median; `None` of fewer rounds than it takes.
     pub(crate) interval: Option<Interval>,
-    /// What processes that differ may add or take away; `None` without an A/A block.
-    pub(crate) noise: Option<f64>,
+    /// What processes that differ may add or take away.
+    pub(crate) noise: f64,
+    /// Whether no A/A block tells it, so that it is [`ASSUMED_NOISE`].
+    pub(crate) is_assumed: bool,
 }
 
 /// What can be said of a change.
@@ -58,7 +60,7 @@ pub(crate) enum Direction {
     Opposite,
     /// None: the interval does not lie beyond the noise.
     WithinNoise,
-    /// The noise is not known, or nothing was published.
+    /// Nothing was published.
     NotJudged,
     /// There is no interval.
     TooFewRounds,
@@ -75,26 +77,26 @@ impl Change {
         let noise = |&[top, bottom]: &Pair| {
             let [first, second] = [top, bottom].map(|(object, method)| numbers.id(object, method));
             let ratio = numbers.ratios(Side::Ours, pass.measure, &[[top, bottom]]).first().copied()?;
-            Some(100.0 * ratio * floor.within(pass.stage, &first, &second)?.exp_m1())
+            let within = floor.within(pass.stage, &first, &second).unwrap_or(ASSUMED_NOISE);
+            Some(100.0 * ratio * within.exp_m1())
         };
         let noise: Vec<f64> = pairs.iter().filter_map(noise).collect();
         Some(Self {
             published: mean_change(&ratios(Side::Published)),
             ours: found.median,
             interval: found.interval_at(LEVEL),
-            noise: mean(&noise),
+            noise: mean(&noise)?,
+            is_assumed: floor.range(pass.stage).is_none(),
         })
     }
 
     /// What can be said of it.
     pub(crate) fn direction(&self) -> Direction {
         let Some(Interval { low, high }) = self.interval else { return Direction::TooFewRounds };
-        let (Some(noise), Some(published)) = (self.noise, self.published) else {
-            return Direction::NotJudged;
-        };
+        let Some(published) = self.published else { return Direction::NotJudged };
         let ours = match () {
-            () if low > noise => 1.0,
-            () if high < -noise => -1.0,
+            () if low > self.noise => 1.0,
+            () if high < -self.noise => -1.0,
             () => return Direction::WithinNoise,
         };
         if published * ours > 0.0 { Direction::Same } else { Direction::Opposite }
@@ -102,7 +104,7 @@ impl Change {
 
     /// Whether the published number lies in the interval, noise included; `None` where one of them is not known.
     pub(crate) fn has_the_published_size(&self) -> Option<bool> {
-        let (Interval { low, high }, noise) = (self.interval?, self.noise?);
+        let (Interval { low, high }, noise) = (self.interval?, self.noise);
         self.published.map(|published| (low - noise..=high + noise).contains(&published))
     }
 
@@ -112,17 +114,14 @@ impl Change {
             Direction::Same => "same direction",
             Direction::Opposite => "opposite direction",
             Direction::WithinNoise => "no change measurable here",
-            Direction::NotJudged if self.noise.is_none() => {
-                "not judged: without an A/A block the noise is not known"
-            }
             Direction::NotJudged => "nothing published to hold it against",
             Direction::TooFewRounds => return "too few rounds to tell a change from noise".into(),
         };
         let interval = self.interval.map_or(String::new(), |Interval { low, high }| {
             format!("95 % interval over rounds {low:.2} to {high:.2} %")
         });
-        let noise = self.noise.map_or(String::new(), |noise| format!(", noise up to {noise:.2} points"));
-        format!("{what} ({interval}{noise})")
+        let assumed = if self.is_assumed { ", assumed for want of an A/A block" } else { "" };
+        format!("{what} ({interval}, noise up to {:.2} points{assumed})", self.noise)
     }
 }
 
@@ -179,33 +178,41 @@ pub(crate) fn by_round(
 mod tests {
     use super::*;
 
+    /// Twelve per cent were published.
+    fn change(low: f64, high: f64, noise: f64) -> Change {
+        let interval = Some(Interval { low, high });
+        Change { published: Some(12.0), ours: 0.5 * (low + high), interval, noise, is_assumed: false }
+    }
+
     #[test]
     fn a_direction_needs_an_interval_beyond_the_noise() {
-        let of = |low, high, noise| {
-            let interval = Some(Interval { low, high });
-            Change { published: Some(12.0), ours: 0.0, interval, noise }.direction()
-        };
-        assert_eq!(of(1.0, 5.0, Some(0.5)), Direction::Same);
-        assert_eq!(of(-5.0, -1.0, Some(0.5)), Direction::Opposite);
-        assert_eq!(of(1.0, 5.0, Some(1.0)), Direction::WithinNoise);
-        assert_eq!(of(-1.0, 5.0, Some(0.5)), Direction::WithinNoise);
-        assert_eq!(of(1.0, 5.0, None), Direction::NotJudged);
-        assert_eq!(of(-1.0, 5.0, None), Direction::NotJudged);
-        let few = Change { published: Some(12.0), ours: 9.0, interval: None, noise: Some(1.0) };
+        let of = |low, high, noise| change(low, high, noise).direction();
+        assert_eq!(of(1.0, 5.0, 0.5), Direction::Same);
+        assert_eq!(of(-5.0, -1.0, 0.5), Direction::Opposite);
+        assert_eq!(of(1.0, 5.0, 1.0), Direction::WithinNoise);
+        assert_eq!(of(-1.0, 5.0, 0.5), Direction::WithinNoise);
+        let few = Change { interval: None, ..change(9.0, 9.0, 1.0) };
         assert_eq!(few.direction(), Direction::TooFewRounds);
-        let alone = Change { published: None, interval: Some(Interval { low: 2.0, high: 3.0 }), ..few };
+        let alone = Change { published: None, ..change(2.0, 3.0, 1.0) };
         assert_eq!(alone.direction(), Direction::NotJudged);
     }
 
     #[test]
     fn a_size_is_the_published_one_within_interval_and_noise() {
-        let of = |published, noise| {
-            let interval = Some(Interval { low: 10.0, high: 12.0 });
-            Change { published, ours: 11.0, interval, noise }.has_the_published_size()
-        };
-        assert_eq!(of(Some(13.0), Some(1.0)), Some(true));
-        assert_eq!(of(Some(13.1), Some(1.0)), Some(false));
-        assert_eq!(of(Some(8.9), Some(1.0)), Some(false));
-        assert_eq!((of(Some(11.0), None), of(None, Some(1.0))), (None, None));
+        let of = |published| Change { published, ..change(10.0, 12.0, 1.0) }.has_the_published_size();
+        assert_eq!([Some(13.0), Some(13.1), Some(8.9)].map(of), [Some(true), Some(false), Some(false)]);
+        assert_eq!(of(None), None);
+    }
+
+    #[test]
+    fn an_assumed_noise_judges_and_is_said() {
+        // Four times as long: 5 % of that are 21 points.
+        let far = Change { is_assumed: true, ..change(306.0, 340.0, 21.3) };
+        assert_eq!(far.direction(), Direction::Same);
+        assert_eq!(
+            far.told(),
+            "same direction (95 % interval over rounds 306.00 to 340.00 %, noise up to 21.30 points, assumed for want of an A/A \
+             block)"
+        );
     }
 }

@@ -50,9 +50,19 @@ fn sides() {
         "1 pair seen in both orders pulls 0.500 to the right"
     );
     assert_eq!(
-        evidence(&Evidence::NotAnswerable(Reason::FewControls([1, 0, 2]))),
+        evidence(&Evidence::NotAnswerable(Reason::FewControls([1, 0, 2], BothOrders::default()))),
         "not answerable here, because too few people answered controls, and no pair was seen in both orders \
          (controls: 1 left, 0 none, 2 right)"
+    );
+    let few = |pairs, people, apart| reason(&Reason::FewInBothOrders(BothOrders { pairs, people, apart }));
+    assert_eq!(
+        few(5, 3, 0),
+        "5 pairs in both orders were seen by 3 people, and fewer than four tell no spread; there are no controls"
+    );
+    assert_eq!(
+        few(0, 0, 190),
+        "no pair was seen in both orders on one object: 190 pairs were seen in both orders, but each order in a question or on an \
+         object of its own; there are no controls"
     );
 }
 
@@ -88,7 +98,8 @@ fn a_wrong_key() {
     );
     assert_eq!(
         evidence(&Evidence::NotAnswerable(Reason::FewPairsInBothOrders {
-            remarks: vec![Remark::OtherStudysForms]
+            remarks: vec![Remark::OtherStudysForms],
+            apart: 0
         })),
         "not answerable here, because fewer than four pairs were seen in both orders of sides: a wrong key looks like a \
          preference; the sides are not those of the forms that the study deals"

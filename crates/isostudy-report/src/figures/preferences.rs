@@ -191,8 +191,9 @@ pub(super) fn overall(study: &Study, tally: &Tally, sheet: Sheet) -> Unfinished 
     let rows = vec![vec![(LARGE, shares), (1.0 - LARGE, panel)]];
     let canvas = rows_of_panels(sheet, &legend, rows, OVERALL);
     let mut caption = String::from(
-        "Overall preference. First: in what share of the answers that showed a method it was chosen, one scale for all. Second: as \
-         published, the sum of a configuration's factors over its comparison groups.",
+        "Overall preference. First: in what share of the answers that showed a method it was chosen. Methods met different \
+         others, so these shares are not one scale; the figure of worths is. Second: as published, the sum of a configuration's \
+         factors over its comparison groups.",
     );
     caption.push_str(&weights(study));
     Unfinished { name: "preference_overall", caption, canvas }

@@ -6,7 +6,7 @@ use super::{names, screens};
 use crate::evidence_of_probes;
 use crate::statement::Block;
 use crate::statement::{Finding, Standing};
-use crate::words::{counted, list, numbers, p as p_value};
+use crate::words::{counted, list, numbers, of_all, p as p_value, people};
 use isostudy_inference::Preferences;
 use isostudy_inference::audit::{Evidence as Seen, Finding as Probed, Report};
 use isostudy_inference::hypotheses::Hypothesis;
@@ -43,7 +43,7 @@ pub(super) fn controls(preferences: &Preferences<'_>) -> u64 {
 
 /// How many broke which rule, and what was there to judge.
 fn screened(evidence: &Evidence<'_>, respondents: &[Respondent]) -> Finding {
-    let people = respondents.len();
+    let all = respondents.len();
     let broken = respondents.iter().filter(|of| !of.flags.is_empty()).count();
     let breakers = |rule: Flag| respondents.iter().filter(|of| of.flags.contains(&rule)).count();
     let rule = |flag: &Flag| {
@@ -79,14 +79,14 @@ fn screened(evidence: &Evidence<'_>, respondents: &[Respondent]) -> Finding {
         }
     }
     // Who answered controls alone is no participant of any other section.
-    let others = match people.saturating_sub(seen.len()) {
+    let others = match all.saturating_sub(seen.len()) {
         0 => String::new(),
         1 => ", 1 of whom compared nothing,".into(),
         n => format!(", {n} of whom compared nothing,"),
     };
     let who = match broken {
-        0 => format!("None of {}{others} broke", counted(people, "participant")),
-        _ => format!("{broken} of {}{others} broke", counted(people, "participant")),
+        0 => format!("None of {}{others} broke", counted(all, "participant")),
+        _ => format!("{broken} of {}{others} broke", counted(all, "participant")),
     };
     let which = if rules.is_empty() { String::new() } else { format!(" ({})", list(&rules)) };
     let mut text = format!(
@@ -115,33 +115,69 @@ fn broken_by(flag: Flag) -> &'static str {
     }
 }
 
-/// The tests that come out otherwise without those who broke a rule.
+/// In short, what is decided otherwise without those who broke a rule of screening, of so many people. A study in which
+/// everybody broke one has nobody left to compare with.
+pub(super) fn without_them(of: &WithoutBreakers, all: usize) -> String {
+    let broken = of.people.len();
+    if !of.leaves_somebody() {
+        let who = if broken == all {
+            format!("All {}", people(all))
+        } else {
+            format!("{broken} of {}", people(all))
+        };
+        return format!("{who} broke a rule of screening, so that nobody is left to compare them with.");
+    }
+    let changes = of.changes();
+    let kinds = [
+        (&changes.turned, ["holds", "hold"], "in the other direction"),
+        (&changes.undecided, ["becomes", "become"], "undecided with fewer people"),
+        (&changes.decided, ["holds", "hold"], "only then"),
+    ];
+    let mut parts: Vec<String> = Vec::new();
+    for (tested, [one, more], how) in kinds.into_iter().filter(|(tested, ..)| !tested.is_empty()) {
+        let does = match parts.is_empty() {
+            true => of_all(tested.len(), of.tests.len(), "contrast", [one, more]),
+            false => format!("{} {}", tested.len(), if tested.len() == 1 { one } else { more }),
+        };
+        parts.push(format!("{does} {how}"));
+    }
+    if parts.is_empty() {
+        parts.push(format!("none of {} is decided otherwise", counted(of.tests.len(), "contrast")));
+    }
+    format!("{broken} of {} broke a rule of screening. Without them, {}.", people(all), list(&parts))
+}
+
+/// The tests that are decided otherwise without those who broke a rule.
 fn without_breakers(evidence: &Evidence<'_>, of: &WithoutBreakers) -> Finding {
-    let label = |without: &Option<Hypothesis>| {
-        without.as_ref().map_or("nobody left", |other| other.conclusion().label())
-    };
-    let changed = of.tests.iter().filter(|(with, without)| with.conclusion().label() != label(without));
-    let changed: Vec<&(Hypothesis, Option<Hypothesis>)> = changed.collect();
-    let tests = counted(of.tests.len(), "test");
-    let outcome = match changed.len() {
-        0 => format!("none of {tests} comes out otherwise"),
-        n => {
-            let name = |(with, without): &&(Hypothesis, Option<Hypothesis>)| {
-                let tested = names::hypothesis(evidence, with);
-                format!("{tested} ({}, then {})", with.conclusion().label(), label(without))
-            };
-            let mut named: Vec<String> = changed.iter().take(NAMED).map(name).collect();
-            if n > NAMED {
-                named.push(format!("{} more", n - NAMED));
-            }
-            let comes = if n == 1 { "comes" } else { "come" };
-            format!("{n} of {tests} {comes} out otherwise: {}", list(&named))
-        }
-    };
     let noun = if of.people.len() == 1 { "Participant" } else { "Participants" };
-    let people = numbers(&of.people, ", ");
+    let own = numbers(&of.people, ", ");
     let rule = of.rule.map_or("some rule".into(), |flag| format!("a rule by {}", broken_by(flag)));
-    Finding::new(Standing::Noted, format!("{noun} {people} broke {rule}: without them, {outcome}."))
+    let who = format!("{noun} {own} broke {rule}");
+    if !of.leaves_somebody() {
+        let text = format!("{who}. Nobody is left without them, so nothing is compared.");
+        return Finding::new(Standing::Noted, text);
+    }
+    let changes = of.changes();
+    let name = |tested: &&Hypothesis| names::hypothesis(evidence, tested);
+    let part = |what: &str, tested: &[&Hypothesis]| {
+        let mut named: Vec<String> = tested.iter().take(NAMED).map(name).collect();
+        if tested.len() > NAMED {
+            named.push(format!("{} more", tested.len() - NAMED));
+        }
+        (!tested.is_empty()).then(|| format!(" {what}: {}.", list(&named)))
+    };
+    let parts = [
+        part("In the other direction", &changes.turned),
+        part("Undecided with fewer people", &changes.undecided),
+        part("Decided only then", &changes.decided),
+    ];
+    let tests = counted(of.tests.len(), "test");
+    let outcome = match changes.number() {
+        0 => format!("none of {tests} is decided otherwise"),
+        n => format!("{n} of {tests} {} decided otherwise", if n == 1 { "is" } else { "are" }),
+    };
+    let parts: String = parts.into_iter().flatten().collect();
+    Finding::new(Standing::Noted, format!("{who}: without them, {outcome}.{parts}"))
 }
 
 /// What a probe found.

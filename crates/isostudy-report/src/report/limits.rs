@@ -40,7 +40,13 @@ pub(super) fn all(evidence: &Evidence<'_>) -> Vec<String> {
         (true, true) => {
             "Sides: no pair was shown in both orders. So each result is about a method together with its side."
         }
-        (true, false) => "Sides: pairs were shown in both orders, so that a liking for a side can be told.",
+        (true, false) if sides::is_probed(evidence) => {
+            &format!("Sides: {}, so that a liking for a side can be told.", sides::in_both_orders(evidence))
+        }
+        (true, false) => &format!(
+            "Sides: {}. A model with a side can tell a liking for it; the audit cannot, and says why.",
+            sides::in_both_orders(evidence)
+        ),
     };
     let mut lines: Vec<String> = [instruction, display, order, side].map(String::from).into();
     if let Some(study) = evidence.study {

@@ -10,7 +10,9 @@ use isostudy_design::Level;
 use isostudy_design::contrast::{Over, contrasts};
 use isostudy_inference::audit::{Finding as Verdict, Probe, Report};
 use isostudy_inference::sides::{SideBonus, Sides};
+use isostudy_statistics::interval::Interval;
 use isostudy_statistics::{SideBound, SideDesign};
+use std::collections::BTreeSet;
 
 /// What the probe for a side says.
 struct Probed {
@@ -27,6 +29,11 @@ impl Probed {
         let evidence = format!("{}{p}", evidence_of_probes::evidence(&report.evidence));
         Some(Self { found: report.finding == Verdict::Found, evidence })
     }
+}
+
+/// Whether the probe for a side could look.
+pub(super) fn is_probed(evidence: &Evidence<'_>) -> bool {
+    Probed::of(evidence.audit()).is_some()
 }
 
 /// That sides and methods go together, where they do.
@@ -102,12 +109,13 @@ fn side(evidence: &Evidence<'_>, probe: Option<Probed>) -> Vec<Finding> {
     for (design, what) in [
         (
             SideDesign::Counterbalanced,
-            "Pairs were shown in both orders, so a bonus for the left side can be estimated",
+            format!("{}, so a bonus for the left side can be estimated", capital(&in_both_orders(evidence))),
         ),
         (
             SideDesign::ThroughAdditivity,
             "Where three items or more were compared, a bonus for the left side can be estimated, but only if worths are \
-             additive, which the answers cannot show",
+             additive, which the answers cannot show"
+                .into(),
         ),
     ] {
         let own = sides
@@ -145,6 +153,36 @@ fn bonus(of: SideBonus) -> String {
             format!("{} (no interval: the answers tell no spread between participants)", number(side, 2))
         }
     }
+}
+
+/// How many pairs of items were shown in both orders, in words. On one object or not is left open: models take all objects together.
+pub(super) fn in_both_orders(evidence: &Evidence<'_>) -> String {
+    let compared = evidence.shown.iter().filter(|b| b.left() != b.right());
+    let shown: BTreeSet<[usize; 2]> = compared.map(|b| [b.left(), b.right()]).collect();
+    let pairs: BTreeSet<[usize; 2]> = shown.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
+    let both = pairs.iter().filter(|&&[a, b]| shown.contains(&[a, b]) && shown.contains(&[b, a])).count();
+    let was = if both == 1 { "was" } else { "were" };
+    format!("{both} of {} {was} shown in both orders", counted(pairs.len(), "pair"))
+}
+
+/// Which side people favour by the model of the widest group that shows pairs in both orders; `None` where its interval spans zero.
+pub(super) fn favoured(sides: &Sides<'_>) -> Option<String> {
+    let widest = sides.with(SideDesign::Counterbalanced).max_by_key(|of| of.group.ballots.len())?;
+    let (side, by) = match widest.bonus? {
+        SideBonus::AtLeast(SideBound { side, at_least }) => {
+            (names::side(side), format!("at least {}", number(at_least, 2)))
+        }
+        SideBonus::Left(left, Some(within)) if within.low > 0.0 || within.high < 0.0 => {
+            let turned = Interval { low: -within.high, high: -within.low };
+            let (name, of, within) =
+                if left > 0.0 { ("left", left, within) } else { ("right", -left, turned) };
+            (name, format!("{} ({})", number(of, 2), interval(within, 2)))
+        }
+        SideBonus::Left(..) => return None,
+    };
+    Some(format!(
+        "Whatever stood there, the {side} side was favoured by {by} log-odds, by Davidson's model with a side."
+    ))
 }
 
 /// The levels of a study that always stood on one side of the questions that compare them, as people saw them.

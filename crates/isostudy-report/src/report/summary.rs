@@ -5,7 +5,7 @@ use super::evidence::Evidence;
 use super::told::{self, named};
 use super::{SummaryLine, asked, limits};
 use crate::wants;
-use crate::words::{capital, counted, list, number};
+use crate::words::{capital, counted, list, number, of_all};
 use isostudy_design::record::Purpose;
 use isostudy_design::{Factor, Method, Study};
 use isostudy_inference::Preferences;
@@ -121,11 +121,18 @@ fn sure(evidence: &Evidence<'_>) -> Option<String> {
     tested().next()?;
     let holding: Vec<_> = tested().filter(|h| h.differs()).collect();
     let survive = holding.iter().filter(|h| h.adjusted_over_all.is_none_or(|p| p <= h.rules.level)).count();
+    let survive = match (survive, holding.len()) {
+        (_, 0) => String::new(),
+        (1, 1) => " It also holds with one correction over all tests.".into(),
+        (0, 1) => " It does not hold with one correction over all tests.".into(),
+        (of, _) => {
+            let verb = if of == 1 { "holds" } else { "hold" };
+            format!(" {of} of these also {verb} with one correction over all tests.")
+        }
+    };
     Some(format!(
-        "{} of {} hold at the level of {}, with the person as the unit and p adjusted within families. {survive} of these \
-         also hold with one correction over all tests.",
-        holding.len(),
-        counted(tested().count(), "contrast"),
+        "{} at the level of {}, with the person as the unit and p adjusted within families.{survive}",
+        of_all(holding.len(), tested().count(), "contrast", ["holds", "hold"]),
         evidence.rules().level
     ))
 }

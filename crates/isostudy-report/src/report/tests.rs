@@ -58,8 +58,8 @@ fn choice(outcome: Outcome) -> Choice {
     }
 }
 
-/// The report of these groups' answers, which are about one object.
-fn report_of(title: &str, groups: &[BallotGroup]) -> Report {
+/// The answers of these groups, which are about one object.
+fn responses(groups: &[BallotGroup]) -> Responses {
     let mut answers = Responses { sides_recorded: true, ..Responses::default() };
     for group in groups {
         answers.items.extend(group.items.iter().cloned());
@@ -73,6 +73,12 @@ fn report_of(title: &str, groups: &[BallotGroup]) -> Report {
             answers.answers.push(Answer::new(person, question, sides, choice(ballot.outcome())));
         }
     }
+    answers
+}
+
+/// The report of these groups' answers.
+fn report_of(title: &str, groups: &[BallotGroup]) -> Report {
+    let answers = responses(groups);
     let preferences = Preferences::without_study(&answers, groups, None);
     report_of_groups(title, &preferences, &[], &[])
 }
@@ -404,4 +410,109 @@ fn who_is_left_out_is_left_out_everywhere() {
             "Nothing is said about preference: 18 participants answered, and all broke a rule whose breakers the study leaves out."
         ]
     );
+}
+
+fn found(report: &Report) -> &str {
+    &report.summary.iter().find(|line| line.label == "Found").unwrap().text
+}
+
+/// Twelve answers of each person: every pair of trees in both orders, twice.
+fn twelve(
+    people: std::ops::Range<usize>,
+    answer: fn(usize, usize) -> Outcome,
+) -> Vec<(usize, usize, usize, Outcome)> {
+    let pairs = [(0, 1), (1, 2), (0, 2), (0, 1), (1, 2), (0, 2)];
+    let both = |person| pairs.into_iter().flat_map(move |(a, b)| [(person, a, b), (person, b, a)]);
+    people.flat_map(both).map(|(person, a, b)| (person, a, b, answer(a, b))).collect()
+}
+
+#[test]
+fn nobody_left_is_no_comparison() {
+    let report = report_of("Trees", &groups(&twelve(0..6, |_, _| Left)));
+    let said = found(&report);
+    assert!(
+        said.contains("All 6 people broke a rule of screening, so that nobody is left to compare them with.")
+            && !said.contains("Without"),
+        "{said}"
+    );
+    let checks = texts(&report, "bearing").join("\n");
+    assert!(
+        checks.contains("Nobody is left without them, so nothing is compared.")
+            && !checks.contains("decided otherwise"),
+        "{checks}"
+    );
+}
+
+#[test]
+fn what_turns_round_is_not_what_fewer_people_leave_undecided() {
+    // Who looks prefers the elm; forty press the left, where the oak stands most often.
+    let mut answers: Vec<_> =
+        (0..8).flat_map(|person| vec![(person, 0, 1, Right), (person, 1, 0, Left)]).collect();
+    for person in 8..48 {
+        answers.extend((0..11).map(|_| (person, 0, 1, Left)));
+        answers.push((person, 1, 0, Left));
+    }
+    let report = report_of("Trees", &groups(&answers));
+    let said = found(&report);
+    assert!(
+        said.contains(
+            "40 of 48 people broke a rule of screening. Without them, 1 of 1 contrast holds in the other direction."
+        ),
+        "{said}"
+    );
+    // Here everybody agrees, and six of the twelve are not needed for what they say.
+    let mut answers = twelve(0..4, |a, b| if a < b { Left } else { Right });
+    for person in 4..10 {
+        answers.extend((0..11).map(|_| (person, 0, 1, Left)));
+        answers.push((person, 1, 0, Left));
+    }
+    let report = report_of("Trees", &groups(&answers));
+    let said = found(&report);
+    assert!(
+        said.contains(
+            "6 of 10 people broke a rule of screening. Without them, 1 of 3 contrasts becomes undecided with fewer people."
+        ),
+        "{said}"
+    );
+    let checks = texts(&report, "bearing").join("\n");
+    assert!(checks.contains("1 of 3 tests is decided otherwise. Undecided with fewer people: "), "{checks}");
+}
+
+#[test]
+fn orders_that_few_saw_are_counted_and_not_denied() {
+    let report = report_of("Trees", &groups(&twelve(0..3, |a, b| if a < b { Left } else { Right })));
+    let text = report.to_markdown();
+    assert!(!text.contains("no pair was") && !text.contains("No pair was"), "{text}");
+    let checks = texts(&report, "bearing").join("\n");
+    assert!(
+        checks.contains(
+            "because 3 pairs in both orders were seen by 3 people, and fewer than four tell no spread"
+        ),
+        "{checks}"
+    );
+    assert!(text.contains("Sides: 3 of 3 pairs were shown in both orders."), "{text}");
+}
+
+#[test]
+fn answers_that_all_agree_name_nobody_and_say_why() {
+    let agreeing = |choice: fn(usize, usize) -> Outcome| {
+        let groups = groups(&twelve(0..6, choice));
+        found(&report_of("Trees", &groups)).to_owned()
+    };
+    let why = "The most liked is not named, because some items never won against the others and nothing bounds the worths.";
+    let always = agreeing(|a, b| if a < b { Left } else { Right });
+    assert!(always.contains(why), "{always}");
+    // Whoever stands left wins as often as not: there is a scale.
+    let sides = agreeing(|_, _| Left);
+    assert!(!sides.contains(why), "{sides}");
+}
+
+#[test]
+fn the_main_finding_is_one_sentence() {
+    let groups = groups(&twelve(0..12, |a, b| if a < b { Left } else { Right }));
+    let answers = responses(&groups);
+    let preferences = Preferences::without_study(&answers, &groups, None);
+    let told = found_in_groups(&preferences).unwrap();
+    assert!(told.starts_with("People preferred ") && told.ends_with('.'), "{told}");
+    assert!(!told.trim_end_matches('.').contains(". "), "{told}");
 }

@@ -2,8 +2,9 @@
 
 use super::evidence::{answer_unequally, participants};
 use super::worths::WEIGHTS;
+use super::{checks, sides};
 use crate::wants;
-use crate::words::{capital, counted, interval, list, number, people, percent};
+use crate::words::{capital, counted, interval, list, number, of_all, people, percent};
 use isostudy_design::Study;
 use isostudy_inference::conclusions::{About, Conclusion, Conclusions, Verdict, Why};
 use isostudy_inference::decision::Goal;
@@ -33,6 +34,16 @@ pub(crate) fn sentences(preferences: &Preferences<'_>, results: Option<&Results<
     };
     let rest = [told.weights(), told.side(), told.spread(), told.screening(), told.prediction()];
     first.into_iter().chain(rest).flatten().collect()
+}
+
+/// The first sentence: the main finding.
+pub(crate) fn main_sentence(preferences: &Preferences<'_>, results: Option<&Results<'_>>) -> Option<String> {
+    let first = sentences(preferences, results).into_iter().next()?;
+    let is_end = |&(place, _): &(usize, &str)| {
+        first[place + 2..].starts_with(|letter: char| letter.is_uppercase() || letter.is_ascii_digit())
+    };
+    let end = first.match_indices(". ").find(is_end).map_or(first.len(), |(place, _)| place + 1);
+    Some(first[..end].to_owned())
 }
 
 struct Told<'a, 'b> {
@@ -116,12 +127,8 @@ impl Told<'_, '_> {
         });
         let (place, held, of) = own.max_by_key(|&(_, _, of)| of)?;
         let items = self.preferences.scales[place].group.items.len();
-        let holds = if held == 1 { "holds" } else { "hold" };
-        Some(format!(
-            "On one scale of {}, {held} of {} {holds}.",
-            counted(items, "item"),
-            counted(of, "difference")
-        ))
+        let differences = of_all(held, of, "difference", ["holds", "hold"]);
+        Some(format!("On one scale of {}, {differences}.", counted(items, "item")))
     }
 
     fn objects(&self) -> Option<String> {
@@ -136,6 +143,21 @@ impl Told<'_, '_> {
 
     /// Of a study over all objects and on each; else of the scale with the most answers.
     fn most_liked(&self) -> Option<String> {
+        self.named_most_liked().or_else(|| self.without_bounds())
+    }
+
+    /// Why nobody is called the most liked where answers agree too well.
+    fn without_bounds(&self) -> Option<String> {
+        let is_unbounded = |of: &&Conclusion| {
+            matches!(of.about, About::MostLiked(_) | About::Scale(_))
+                && of.verdict == Verdict::NotJudged(Why::Separated)
+        };
+        self.all().iter().find(is_unbounded)?;
+        let text = "The most liked is not named, because some items never won against the others and nothing bounds the worths.";
+        Some(text.into())
+    }
+
+    fn named_most_liked(&self) -> Option<String> {
         let Some(results) = self.results else {
             let tops = self.all().iter().filter_map(|of| match of.about {
                 About::Top(place) => Some((self.preferences.scales[place].group, &of.verdict)),
@@ -166,18 +188,22 @@ impl Told<'_, '_> {
 
     fn side(&self) -> Option<String> {
         let found = self.conclusions().about(About::Side)?;
-        if !found.holds() {
-            return None;
+        match found.verdict {
+            Verdict::Holds { .. } => {
+                let size = side_share(self.preferences).map_or(String::new(), |(side, share)| {
+                    format!(": {} of the decided answers went {side}", percent(share))
+                });
+                let is_hidden = self.all().iter().any(|of| of.verdict == Verdict::NotJudged(Why::Side));
+                let so = match is_hidden {
+                    true => "No pair was shown on both sides, so the side may have made every preference.",
+                    false => "Whoever answers by the side hides what they prefer.",
+                };
+                Some(format!("People favour a side{size}. {so}"))
+            }
+            // The probe cannot look where no pair was seen in both orders on one object; the model may still tell.
+            Verdict::NotJudged(_) => sides::favoured(self.preferences.sides.as_ref()?),
+            _ => None,
         }
-        let size = side_share(self.preferences).map_or(String::new(), |(side, share)| {
-            format!(": {} of the decided answers went {side}", percent(share))
-        });
-        let is_hidden = self.all().iter().any(|of| of.verdict == Verdict::NotJudged(Why::Side));
-        let so = match is_hidden {
-            true => "No pair was shown on both sides, so the side may have made every preference.",
-            false => "Whoever answers by the side hides what they prefer.",
-        };
-        Some(format!("People favour a side{size}. {so}"))
     }
 
     fn spread(&self) -> Option<String> {
@@ -197,15 +223,8 @@ impl Told<'_, '_> {
     }
 
     fn screening(&self) -> Option<String> {
-        let found = self.conclusions().about(About::Screening)?;
-        let any = self.preferences.screened.iter().find(|of| of.rule.is_none())?;
-        let Verdict::Holds { held, of } = found.verdict else { return None };
-        Some(format!(
-            "Without the {} who broke a rule of screening, {held} of {} {} out otherwise.",
-            people(any.people.len()),
-            counted(of, "contrast"),
-            if held == 1 { "comes" } else { "come" }
-        ))
+        self.conclusions().about(About::Screening).filter(|of| of.verdict != Verdict::Undecided)?;
+        Some(checks::without_them(self.preferences.screened.first()?, self.preferences.respondents.len()))
     }
 
     fn prediction(&self) -> Option<String> {

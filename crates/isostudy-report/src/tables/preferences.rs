@@ -30,7 +30,8 @@ fn groups(study: &Study, factors: &[GroupFactor]) -> Table {
     table.with_note(
         "Factor: wins over all answers to the group's questions. Ties: the group's answers without preference. A \
          configuration that is shown in only some of its group's questions cannot reach 1, so factors of groups of \
-         different size are not on one scale; wins over appearances are.",
+         different size are not on one scale. Wins over appearances have the same limits, but not the same opponents, so they are \
+         no scale either. Worths are on one scale: see that table.",
     )
 }
 

@@ -24,7 +24,7 @@ pub(crate) fn detect(head: &Head, plan: Option<&Plan>) -> Result<Detected, Fault
 /// What in the first rows speaks for a format.
 fn mark(format: Format, head: &Head, plan: Option<&Plan>) -> Option<Detected> {
     let header = &head[0].1;
-    let rule: Option<&str> = match format {
+    let rule: Option<String> = match format {
         Format::Table => {
             let plan = plan?;
             let beside = |title: &String| plan.beside(title).is_some() || is_training(title);
@@ -32,12 +32,12 @@ fn mark(format: Format, head: &Head, plan: Option<&Plan>) -> Option<Detected> {
                 is_participant(title) || is_form(title) || plan.question(title).is_some() || beside(title)
             };
             let all = header.iter().all(own) && header.iter().any(|title| plan.question(title).is_some());
-            all.then_some("every header is a question's id")
+            all.then(|| "every header is a question's id".into())
         }
-        Format::Long => long::is_long(header).then_some("the header has participant, question and choice"),
+        Format::Long => long::rule(header),
         _ => return surveys::mark(format, head).map(|rule| Detected { format, rule }),
     };
-    rule.map(|rule| Detected { format, rule: rule.into() })
+    rule.map(|rule| Detected { format, rule })
 }
 
 /// A table with some of the study's questions is taken for its own, so that what is wrong with it is said.
@@ -47,5 +47,9 @@ fn fallback(head: &Head, plan: Option<&Plan>) -> Result<Detected, Fault> {
         return Ok(Detected { format: Format::Table, rule: "some headers are questions' ids".into() });
     }
     let first: Vec<String> = header.iter().take(4).map(|title| format!("\"{}\"", shorten(title))).collect();
-    Err(Fault::UnknownFormat { header: first.join(", "), formats: Format::names() })
+    let header = match long::nearly(header) {
+        Some(missing) => format!("{}. The long format is near, but there is {missing}", first.join(", ")),
+        None => first.join(", "),
+    };
+    Err(Fault::UnknownFormat { header, formats: Format::names() })
 }

@@ -14,6 +14,7 @@ use crate::screen::{SCREEN_COLUMNS, Screen, ScreenId};
 use crate::sides::SidesSource;
 use crate::value::{Answer, Responses, StimulusId};
 use crate::words::{is_na, normalise};
+use isostudy_design::wording::nearest;
 use isostudy_table::formula::unescape;
 use std::borrow::Cow;
 use std::num::IntErrorKind;
@@ -25,9 +26,73 @@ pub use columns::{LONG_COLUMNS, LONG_NEEDED};
 
 /// Whether a header has the columns that nothing else has.
 pub(crate) fn is_long(header: &[String]) -> bool {
-    let has = |name: &str| header.iter().any(|title| normalise(title) == name);
+    missing(header).is_empty()
+}
+
+fn has(header: &[String], name: &str) -> bool {
+    header.iter().any(|title| normalise(title) == name)
+}
+
+/// The columns that the long format needs and a header lacks.
+fn missing(header: &[String]) -> Vec<&'static str> {
+    let has = |name| has(header, name);
     let sides = has("left") && has("right");
-    has("choice") && (has("participant") || (has("count") && sides)) && (has("question") || sides)
+    let mut missing = Vec::new();
+    let names_people = has("participant") || (has("count") && sides);
+    if !names_people {
+        missing.push("participant");
+    }
+    if !has("question") && !sides {
+        // One side names the pair that the other one completes.
+        missing.extend(["left", "right"].into_iter().filter(|side| !has(side)));
+    }
+    if !has("choice") {
+        missing.push("choice");
+    }
+    missing
+}
+
+/// What in a header speaks for the long format, and which column it does without.
+pub(crate) fn rule(header: &[String]) -> Option<String> {
+    if !is_long(header) {
+        return None;
+    }
+    let who = if has(header, "participant") { "participant" } else { "count" };
+    Some(match has(header, "question") {
+        true => format!("the header has {who}, question and choice"),
+        false => format!("the header has {who}, left, right and choice, and no question: each pair is one"),
+    })
+}
+
+/// Other words for the columns that are needed.
+const MEANT: [(&str, &[&str]); 2] = [
+    ("participant", &["person", "people", "respondent", "subject", "user", "rater", "voter", "who", "id"]),
+    ("choice", &["answer", "response", "chosen", "preferred", "preference", "winner", "vote"]),
+];
+
+/// What a header that is nearly the long format's lacks, and which of its titles may have been meant; nothing of one that has
+/// fewer than two of the columns that are needed.
+pub(crate) fn nearly(header: &[String]) -> Option<String> {
+    let needed = &LONG_COLUMNS[..LONG_NEEDED];
+    let known = needed.iter().filter(|name| has(header, name)).count();
+    let missing = missing(header);
+    if known < 2 || missing.is_empty() {
+        return None;
+    }
+    let others: Vec<&String> =
+        header.iter().filter(|title| !LONG_COLUMNS.contains(&normalise(title).as_str())).collect();
+    let one = |name: &&str| {
+        let words = MEANT.iter().find(|(of, _)| of == name).map_or(&[][..], |(_, words)| words);
+        let means = |title: &&&String| {
+            words.contains(&normalise(title).as_str()) || nearest(title, [*name]).is_some()
+        };
+        let meant = others.iter().find(means);
+        meant.map_or_else(
+            || format!("no column {name}"),
+            |title| format!("no column {name} (did you mean it by \"{}\"?)", shorten(title)),
+        )
+    };
+    Some(missing.iter().map(one).collect::<Vec<_>>().join(" and "))
 }
 
 /// Reads every row under the header, which is the first row that is not blank.
@@ -43,7 +108,11 @@ pub(crate) fn read(
 ) -> Result<Responses, Fault> {
     let header = Header::of(Format::Long, head);
     if !is_long(header.cells) {
-        return Err(header.missing("the header needs participant, question, left, right and choice"));
+        let needed = "the header needs participant, question, left, right and choice";
+        return Err(header.missing(match nearly(header.cells) {
+            Some(missing) => format!("{needed}, and has {missing}"),
+            None => needed.into(),
+        }));
     }
     let columns = Columns::of(&header, plan.is_some(), report)?;
     let ids = if columns.question.is_some() { Ids::OnePair } else { Ids::MadeUp };

@@ -292,3 +292,43 @@ fn encodings_that_do_not_keep_their_promise() {
         assert!(matches!(error_of(text), Fault::Json { .. }), "{}", error_of(text));
     }
 }
+
+#[test]
+fn a_header_that_is_nearly_right_says_what_it_lacks() {
+    let refused = |header: &str| open(&format!("{header}\na,b,c,d,e\n")).unwrap_err().to_string();
+    for (header, lacks) in [
+        ("participant,question,left,right,choise", "no column choice (did you mean it by \"choise\"?)"),
+        ("person,left,right,choice,at", "no column participant (did you mean it by \"person\"?)"),
+        ("participant,left,choice,at,on", "no column right. Known"),
+        (
+            "person,left,right,answer,at",
+            "participant (did you mean it by \"person\"?) and no column choice (did",
+        ),
+    ] {
+        let said = refused(header);
+        assert!(
+            said.contains("The long format is near, but there is no column") && said.contains(lacks),
+            "{said}"
+        );
+    }
+    assert!(!refused("when,what,why,where,who").contains("is near"));
+    // Named by the user, it is held against that format.
+    let mapping = Mapping { format: Some(Format::Long), ..Mapping::default() };
+    let said = parse_with("participant,question,choise\na,Q1,left\n", &mapping).unwrap_err().to_string();
+    assert!(said.contains("no column choice (did you mean it by \"choise\"?)"), "{said}");
+}
+
+#[test]
+fn what_a_header_does_without_is_said() {
+    let rule = |text: &str| open(text).unwrap().report.to_string();
+    let pairs = rule("participant,left,right,choice\np,a,b,left\n");
+    assert!(pairs.contains("the header has participant, left, right and choice, and no question"), "{pairs}");
+    let counts = rule("left,right,choice,count\na,b,left,3\n");
+    assert!(counts.contains("the header has count, left, right and choice, and no question"), "{counts}");
+}
+
+#[test]
+fn an_answer_that_is_nearly_right_is_asked_about() {
+    let said = open("participant,question,left,right,choice\np,q,a,b,lefft\n").unwrap_err().to_string();
+    assert!(said.contains("\"lefft\" is not an answer; did you mean left? Known: "), "{said}");
+}

@@ -7,17 +7,19 @@ use super::reading_rules::ReadingRules;
 use crate::origin;
 use crate::outcome::Outcome;
 use crate::store::{self, Store};
-use crate::terminal::say;
+use crate::terminal::{counted, say};
 use crate::{answer_files, input, kept_answers, manifest, pipeline};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use isostudy_design::Published;
+use isostudy_table::Table;
 use pipeline::Said;
 use self_test::SelfTest;
 use std::path::{Path, PathBuf};
 
-/// Rows of a table that is printed; of a longer one its file is named.
-const LONGEST: usize = 20;
+/// Lines that are printed before the last two, which are what was found and the file to open; of a table that is too long the file is
+/// named.
+const MOST_LINES: usize = 28;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -96,16 +98,41 @@ fn analyse(arguments: &Arguments) -> Result<()> {
 
 /// The tables that are short, then what was found, and the file to open.
 fn print(said: &Said, is_told: impl Fn(&str) -> bool, out: &Path) -> Result<()> {
-    for table in said.tables.iter().filter(|table| is_told(&table.name)) {
-        match table.rows.len() {
-            0..=LONGEST => say(&table.to_markdown())?,
-            rows => {
-                say(&format!("{rows} rows: {}", out.join(format!("tables/{}.md", table.name)).display()))?
+    let told: Vec<&Table> = said.tables.iter().filter(|table| is_told(&table.name)).collect();
+    // With a line between them.
+    let printed: Vec<String> =
+        told.iter().map(|table| format!("{}\n", table.to_markdown().trim_end())).collect();
+    let fits = fitting(&printed.iter().map(|text| 1 + text.lines().count()).collect::<Vec<_>>());
+    for ((table, text), fits) in told.iter().zip(&printed).zip(fits) {
+        match fits {
+            true => say(text)?,
+            false => {
+                let path = out.join(format!("tables/{}.md", table.name));
+                say(&format!("{}, {}: {}", table.caption, rows(table.rows.len()), path.display()))?;
             }
         }
     }
-    said.found.iter().try_for_each(|sentence| say(sentence))?;
+    say(said.found.as_deref().unwrap_or("No answers are left to say anything about."))?;
     say(&out.join("report.html").display().to_string())
+}
+
+fn rows(number: usize) -> String {
+    counted(number as u64, "row")
+}
+
+/// Which of so many texts of so many lines are printed, so that they and a line for each of the others are [`MOST_LINES`] at most.
+/// The shortest are printed first, so that most are.
+fn fitting(lines: &[usize]) -> Vec<bool> {
+    let mut left = MOST_LINES.saturating_sub(lines.len());
+    let mut fits = vec![false; lines.len()];
+    let mut order: Vec<usize> = (0..lines.len()).collect();
+    order.sort_by_key(|&place| lines[place]);
+    for place in order {
+        let more = lines[place].saturating_sub(1);
+        fits[place] = more <= left;
+        left -= if fits[place] { more } else { 0 };
+    }
+    fits
 }
 
 fn analyse_without_study(arguments: &Arguments, path: &Path) -> Result<()> {
@@ -131,4 +158,20 @@ fn analyse_without_study(arguments: &Arguments, path: &Path) -> Result<()> {
         &store,
     )?;
     print(&said, |name| ["tests", "worths"].contains(&name), &out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_printed_fits() {
+        assert_eq!(fitting(&[12, 20, 9, 8]), [false, false, true, true]);
+        assert_eq!(fitting(&[28]), [true]);
+        assert_eq!(fitting(&[29]), [false]);
+        for lines in [&[12, 20, 9, 8][..], &[14, 14], &[27, 2], &[0, 0, 28]] {
+            let printed = lines.iter().zip(fitting(lines)).map(|(own, fits)| if fits { *own } else { 1 });
+            assert!(printed.sum::<usize>() <= MOST_LINES, "{lines:?}");
+        }
+    }
 }

@@ -10,13 +10,13 @@ use clap::Args;
 use isostudy_serve::download::{self, DownloadError};
 use isostudy_serve::export::{self, Given};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Study file whose bundle was answered
     study: PathBuf,
-    /// Files that the page gave, CSV or JSON
+    /// Files that the page gave, CSV or JSON, or folders of nothing else
     #[arg(required = true)]
     downloads: Vec<PathBuf>,
     /// File to write, in the long format
@@ -33,7 +33,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let (file, key, _) = forms(&study)?;
     let mut all: BTreeMap<(String, u32), Given> = BTreeMap::new();
     let mut again = 0;
-    for path in &arguments.downloads {
+    let downloads: Vec<Vec<PathBuf>> =
+        arguments.downloads.iter().map(|path| files(path)).collect::<Result<_>>()?;
+    for path in downloads.iter().flatten() {
         let place = || path.display().to_string();
         input::regular(path)?;
         ensure!(
@@ -61,4 +63,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     tell!("{} of {people}{repeated}", counted(given.len() as u64, "answer"));
     say(&arguments.out.display().to_string())?;
     Ok(Outcome::Done)
+}
+
+/// The file itself, or all files of a folder by their names; those that begin with a dot are no downloads.
+///
+/// # Errors
+/// If the folder cannot be read, or has no file.
+fn files(path: &Path) -> Result<Vec<PathBuf>> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let place = || path.display().to_string();
+    let entries = std::fs::read_dir(path).with_context(place)?.map(|entry| Ok(entry?.path()));
+    let mut files: Vec<PathBuf> = entries.collect::<std::io::Result<_>>().with_context(place)?;
+    let is_hidden =
+        |file: &Path| file.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+    files.retain(|file| file.is_file() && !is_hidden(file));
+    files.sort();
+    ensure!(!files.is_empty(), "{}: no files in it", place());
+    Ok(files)
 }

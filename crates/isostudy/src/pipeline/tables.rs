@@ -105,8 +105,8 @@ pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store)
 /// What a terminal is told of answers.
 pub(crate) struct Said {
     pub(crate) tables: Vec<Table>,
-    /// What was found, a sentence each.
-    pub(crate) found: Vec<String>,
+    /// What was found before all, in one sentence; `None` where no answers are left.
+    pub(crate) found: Option<String>,
 }
 
 /// Tables, figures and report of answers without a study, into a folder of their own, with how the answers were read.
