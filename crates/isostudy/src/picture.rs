@@ -40,6 +40,7 @@ pub(crate) fn shading(section: &ShadingSection) -> Shading {
         background: colour(section.background),
         light_follows: light_follows(section.light_follows),
         ambient: section.ambient as f32,
+        crease_deg: section.crease_deg as f32,
         ..Shading::default()
     }
 }
@@ -71,7 +72,7 @@ impl Drawn {
         error: impl FnOnce() -> Result<Colouring>,
     ) -> Result<Self> {
         let colouring = match look {
-            Look::Smooth | Look::Flat | Look::Wireframe | Look::SmoothWireframe => None,
+            Look::Smooth | Look::Flat | Look::Wireframe | Look::SmoothWireframe | Look::Creased => None,
             Look::Quality => Some(Colouring::radius_ratio(mesh)),
             Look::Error => Some(error()?),
         };
@@ -223,6 +224,7 @@ fn raster_look(look: Look) -> isostudy_raster::Look {
         Look::Flat | Look::Quality | Look::Error => isostudy_raster::Look::Flat,
         Look::Wireframe => isostudy_raster::Look::Wireframe,
         Look::SmoothWireframe => isostudy_raster::Look::SmoothWireframe,
+        Look::Creased => isostudy_raster::Look::Creased,
     }
 }
 

@@ -63,6 +63,7 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
     }
     c.number("shading.ambient", s.ambient, 0.0, 1.0)?;
     c.positive("shading.error_scale", s.error_scale, 10.0)?;
+    c.number("shading.crease_deg", s.crease_deg, 0.0, 180.0)?;
     c.count("stimuli.pair_scale", file.stimuli.pair_scale, 1, 4)?;
     file.viewer.as_ref().map_or(Ok(()), |viewer| viewer.check(c))?;
 

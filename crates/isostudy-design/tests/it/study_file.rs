@@ -310,6 +310,7 @@ fn full_study() -> StudyFile {
             light_follows: LightFollows::Camera,
             ambient: 1.0,
             error_scale: 1.0,
+            crease_deg: 1.0,
         },
         stimuli: StimuliSection { pair_scale: 1 },
         stills: vec![StillSection {
