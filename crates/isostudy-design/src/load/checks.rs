@@ -152,6 +152,7 @@ pub(super) fn check_objects(c: &Checker<'_>, objects: &[ObjectSection]) -> Resul
         c.length(&key("benchmark_spacing"), object.benchmark_spacing, 1e6)?;
         c.length(&key("stimulus_spacing"), object.stimulus_spacing, 1e6)?;
         c.positive(&key("camera.distance"), object.camera.distance, 1e6)?;
+        c.number(&key("camera.middle_z"), object.camera.middle_z, -1e6, 1e6)?;
         c.number(&key("camera.vertical_fov_rad"), object.camera.vertical_fov_rad, 0.01, 3.1)?;
         check_field(c, &key("field"), &object.field)?;
     }

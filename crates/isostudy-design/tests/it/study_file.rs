@@ -441,7 +441,7 @@ fn object(field: FieldSection) -> ObjectSection {
         max: [0.0; 3],
         benchmark_spacing: 1.0,
         stimulus_spacing: 1.0,
-        camera: CameraSection { distance: 1.0, vertical_fov_rad: 1.0 },
+        camera: CameraSection { distance: 1.0, vertical_fov_rad: 1.0, middle_z: 1.0 },
     }
 }
 

@@ -152,7 +152,8 @@ fn triangles_without_direction_do_not_decide() {
 /// Four triangles at one edge: two sheets that touch, each with a normal of its own.
 #[test]
 fn sheets_that_touch_in_an_edge_stay_apart() {
-    let positions = [[0., 0., 0.], [0., 1., 0.], [1., 0., 0.1], [-1., 0., 0.1], [1., 0., -0.1], [-1., 0., -0.1]];
+    let positions =
+        [[0., 0., 0.], [0., 1., 0.], [1., 0., 0.1], [-1., 0., 0.1], [1., 0., -0.1], [-1., 0., -0.1]];
     let mesh = TriangleMesh {
         positions: positions.map(Vec3::from).to_vec(),
         normals: Vec::new(),
