@@ -187,7 +187,7 @@ def unbeaten():
 def by_object(of, cell):
     """A row a method, a column an object, of a table by id; what is there for its look or its number of triangles alone is left out."""
     names = {id.split("_")[0]: row["object"] for id, row in table("configurations").items()}
-    methods = [m for m in dict.fromkeys(id.split("_")[1] for id in of) if not m.endswith(("-flat", "-matched"))]
+    methods = [m for m in dict.fromkeys(id.split("_")[1] for id in of) if not m.endswith(("-flat", "-smooth", "-matched"))]
     lines = ["| method | " + " | ".join(names[o] for o in OBJECTS) + " |", "|---|" + "---:|" * len(OBJECTS)]
     for method in methods:
         lines.append(f"| `{method}` | " + " | ".join(cell(of[f"{o}_{method}"]) for o in OBJECTS) + " |")

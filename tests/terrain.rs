@@ -95,10 +95,10 @@ fn known(out: &Path) -> Vec<Known> {
             ranges: ["x", "y"].map(|of| range(&row["object"], method, of).unwrap_or([f64::NAN; 2])),
         }
     };
-    // A flat look is the same mesh once more.
+    // Another look is the same mesh once more.
     rows(out, "configurations")
         .iter()
-        .filter(|row| !row["id"].ends_with("-flat"))
+        .filter(|row| !["-flat", "-smooth"].iter().any(|look| row["id"].ends_with(look)))
         .map(configuration)
         .collect()
 }

@@ -22,7 +22,7 @@ if (skip) console.error(`SKIPPED: ${skip} - the viewer was not tested in a brows
 
 const LAPTOP = { width: 1280, height: 720 };
 const PHONE = { width: 390, height: 844 };
-const MODES = ['smooth', 'flat', 'wires', 'quality', 'distance', 'normals', 'difference'];
+const MODES = ['smooth', 'creased', 'flat', 'wires', 'quality', 'distance', 'normals', 'difference'];
 
 let browser;
 before(async () => {
@@ -398,7 +398,7 @@ test('fingers turn both meshes and move nearer, and the page stays where it is',
   for (let step = 1; step <= 5; step += 1) await touch('touchMove', [x - 20 - 8 * step, y], [x + 20 + 8 * step, y]);
   await touch('touchEnd');
   await changes('two fingers');
-  await page.locator('.modes label').nth(3).tap();
+  await page.locator('.modes label').nth(4).tap();
   await page.waitForFunction(() => document.querySelector('.stage').dataset.shown.includes(' quality '));
   await changes('a mode by a tap');
   // Controls are large enough for a finger.
@@ -427,7 +427,7 @@ test('an address leads to a view, and a view has an address', { skip }, async ()
   // The right side follows the left to another object, by the same method.
   await page.selectOption('#left', 'ss_su');
   await page.waitForFunction(() => document.querySelector('.stage').dataset.shown === 'ss_su ss_bp normals 2');
-  await page.locator('.modes label').nth(1).click();
+  await page.locator('.modes label').nth(2).click();
   await page.waitForFunction(() => document.querySelector('.stage').dataset.shown === 'ss_su ss_bp flat 2');
   assert.equal(new URL(page.url()).hash, '#left=ss_su&right=ss_bp&mode=flat&factor=2');
   await page.evaluate(() => { location.hash = '#left=as_bi&right=nothing&mode=quality&factor=99'; });

@@ -131,10 +131,17 @@ pub struct ObjectSection {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraSection {
-    /// The paper's distance parameter D; the eye is about 1.323 D from the origin.
+    /// The paper's distance parameter D; the eye is about 1.323 D from the middle of the picture.
     pub distance: f64,
     /// Vertical field of view in radians.
     pub vertical_fov_rad: f64,
+    /// How high over the origin the middle of the picture lies. One that is left out is not written: digests stay as they are.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub middle_z: f64,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// How stimuli are made from turntables.

@@ -288,7 +288,10 @@ impl<'a> Showings<'a> {
         for group in &study.groups {
             // By design, not by showing: showings of single comparisons are judged above.
             let mut counts: BTreeMap<String, u64> = BTreeMap::new();
-            for object in &study.file.objects {
+            // An object that the group is not asked about at all is none on which its methods' sums of wins are compared.
+            let is_asked =
+                |object: usize| group.comparisons.iter().any(|&c| study.comparisons[c].object == object);
+            for (_, object) in study.file.objects.iter().enumerate().filter(|(place, _)| is_asked(*place)) {
                 for method in &group.members {
                     counts.insert(format!("{}_{method}", object.id), 0);
                 }

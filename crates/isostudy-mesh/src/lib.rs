@@ -1,7 +1,7 @@
 //! Triangle meshes: what a mesh is, what every triangle is worth, and what is wrong with the topology.
 //!
 //! A [`TriangleMesh`] is plain data. [`quality`] measures its triangles, [`topology`] its connections, [`repair`]
-//! closes holes, [`self_intersections`] counts triangles that pass through each other, [`normals`] gives it vertex normals, [`metro`] says how far it is from another, and a [`MeshFormat`]
+//! closes holes, [`self_intersections`] counts triangles that pass through each other, [`normals`] gives it vertex normals, and [`corner_normals`] keeps creases sharp, [`metro`] says how far it is from another, and a [`MeshFormat`]
 //! moves it in and out of files: OBJ, PLY and STL both ways, binary glTF out, plainly or in few bytes. A [`LabelledMesh`] lies between labels. [`NearestTriangles`] finds the nearest
 //! triangle to a point. Everything is deterministic; only [`metro`] uses threads.
 //!
@@ -43,6 +43,8 @@
 mod closest_point;
 mod connectivity;
 mod corner_fans;
+#[cfg(feature = "creases")]
+mod creases;
 pub mod distribution;
 #[cfg(feature = "files")]
 mod files;
@@ -58,6 +60,8 @@ pub mod topology;
 mod triangle_mesh;
 mod weld;
 
+#[cfg(feature = "creases")]
+pub use creases::{CornerNormals, corner_normals};
 #[cfg(feature = "files")]
 pub use files::{
     CompactNumbers, MeshFormat, ObjError, Per, PlyError, ReadError, StlError, read_obj, read_ply, read_stl,

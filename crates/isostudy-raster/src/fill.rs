@@ -117,8 +117,12 @@ impl Painter {
         }
         let span = Span { columns, rows };
         match (self.look, self.coloured) {
-            (Look::Smooth | Look::Flat, false) => self.scan::<SURFACE, false>(at, drawn, span, samples),
-            (Look::Smooth | Look::Flat, true) => self.scan::<SURFACE, true>(at, drawn, span, samples),
+            (Look::Smooth | Look::Flat | Look::Creased, false) => {
+                self.scan::<SURFACE, false>(at, drawn, span, samples)
+            }
+            (Look::Smooth | Look::Flat | Look::Creased, true) => {
+                self.scan::<SURFACE, true>(at, drawn, span, samples)
+            }
             (Look::Wireframe, false) => self.scan::<LINES, false>(at, drawn, span, samples),
             (Look::Wireframe, true) => self.scan::<LINES, true>(at, drawn, span, samples),
             (Look::SmoothWireframe, false) => self.scan::<BOTH, false>(at, drawn, span, samples),

@@ -127,7 +127,7 @@ impl Palette {
     /// pixels are off by 1.5 8-bit levels on average, 1.7 with lines (`tests/it/looks.rs` bounds it).
     pub fn of_numbers(shading: &Shading, look: Look) -> Palette {
         let grids: &[Grid] = match look {
-            Look::Smooth | Look::Flat | Look::Wireframe => &PLAIN_NUMBERS,
+            Look::Smooth | Look::Flat | Look::Wireframe | Look::Creased => &PLAIN_NUMBERS,
             Look::SmoothWireframe => &LINED_NUMBERS,
         };
         let share = |i: usize, count: usize| (i as f32 + 0.5) / count as f32;

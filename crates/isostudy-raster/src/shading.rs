@@ -18,6 +18,8 @@ pub enum Look {
     Wireframe,
     /// The smooth surface with its triangle edges over it, in [`Shading::wire`].
     SmoothWireframe,
+    /// As [`Look::Smooth`], but sharp over edges that turn by [`Shading::crease_deg`] or more.
+    Creased,
 }
 
 /// What a turntable's light is fixed to.
@@ -32,8 +34,8 @@ pub enum LightFollows {
 
 /// Light, material and line colours, red, green, blue in 0..1 as written to the 8-bit frame (no gamma step).
 ///
-/// The default is the shader of Costen (2026) with its constants; `light_follows`, `ambient`, `wire` and
-/// `wire_width_px` are ours.
+/// The default is the shader of Costen (2026) with its constants; `light_follows`, `ambient`, `wire`,
+/// `wire_width_px` and `crease_deg` are ours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shading {
     /// The direction light travels, L. Not normalised: the original's has length 1.0198.
@@ -54,6 +56,9 @@ pub struct Shading {
     pub wire: [f32; 3],
     /// Width of lines in pixels, half of it on either side of an edge.
     pub wire_width_px: f32,
+    /// Degrees between the normals of two triangles from which on their edge is sharp in [`Look::Creased`], 0 to 180:
+    /// see [`corner_normals`](isostudy_mesh::corner_normals).
+    pub crease_deg: f32,
 }
 
 impl Default for Shading {
@@ -68,6 +73,7 @@ impl Default for Shading {
             background: [0.004, 0.509, 0.506],
             wire: [0.03, 0.02, 0.05],
             wire_width_px: 1.0,
+            crease_deg: 40.0,
         }
     }
 }
@@ -113,9 +119,13 @@ impl Shading {
     }
 
     pub(crate) fn check(&self) -> Result<(), RasterError> {
-        match self.ambient {
-            0.0..=1.0 => Ok(()),
-            value => Err(RasterError::Setting { setting: "ambient", value: value as f64, allowed: "0 to 1" }),
+        let wrong = |setting, value: f32, allowed| {
+            Err(RasterError::Setting { setting, value: value as f64, allowed })
+        };
+        match (self.ambient, self.crease_deg) {
+            (0.0..=1.0, 0.0..=180.0) => Ok(()),
+            (0.0..=1.0, value) => wrong("crease_deg", value, "0 to 180"),
+            (value, _) => wrong("ambient", value, "0 to 1"),
         }
     }
 }

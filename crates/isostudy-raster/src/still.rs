@@ -15,7 +15,7 @@ use tiny_skia::{Pixmap, PremultipliedColorU8};
 ///
 /// # Errors
 /// [`RasterError`] for a viewport or camera out of range, a used vertex that is not finite, an index out of range,
-/// an ambient light out of range, or missing normals (every look but [`Look::Flat`] takes vertex normals).
+/// an ambient light or a crease angle out of range, or missing normals (every look but [`Look::Flat`] takes vertex normals).
 pub fn render(
     mesh: &TriangleMesh,
     camera: &Camera,

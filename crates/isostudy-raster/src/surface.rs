@@ -3,7 +3,7 @@
 use crate::colouring::{Colouring, Values};
 use crate::{Look, RasterError, Shading};
 use glam::Vec3;
-use isostudy_mesh::TriangleMesh;
+use isostudy_mesh::{CornerNormals, TriangleMesh, corner_normals};
 
 /// A drawable mesh.
 pub(crate) struct Surface<'a> {
@@ -17,6 +17,7 @@ pub(crate) struct Surface<'a> {
 enum Normals<'a> {
     PerVertex(&'a [Vec3]),
     PerTriangle(Vec<Vec3>),
+    PerCorner(CornerNormals),
 }
 
 /// A surface's exposures under one light, in the order of its normals.
@@ -32,8 +33,8 @@ pub(crate) struct Corners {
 
 impl<'a> Surface<'a> {
     /// # Errors
-    /// When an index is out of range, a used position or normal is not finite, a smooth look lacks normals, the ambient
-    /// light is out of range, or the numbers do not fit the mesh.
+    /// When an index is out of range, a used position or normal is not finite, a smooth look lacks normals, the
+    /// shading is out of range, or the numbers do not fit the mesh.
     pub(crate) fn try_new(
         mesh: &'a TriangleMesh,
         colouring: Option<&Colouring>,
@@ -62,14 +63,14 @@ impl<'a> Surface<'a> {
                 }
             }
         }
-        let normals = if smooth {
-            Normals::PerVertex(&mesh.normals)
-        } else {
-            let face_normal = |t| {
-                let [a, b, c] = mesh.corners(t);
-                (b - a).cross(c - a).normalize_or_zero()
-            };
-            Normals::PerTriangle((0..mesh.triangles.len()).map(face_normal).collect())
+        let face_normal = |t| {
+            let [a, b, c] = mesh.corners(t);
+            (b - a).cross(c - a).normalize_or_zero()
+        };
+        let normals = match look {
+            Look::Smooth | Look::Wireframe | Look::SmoothWireframe => Normals::PerVertex(&mesh.normals),
+            Look::Flat => Normals::PerTriangle((0..mesh.triangles.len()).map(face_normal).collect()),
+            Look::Creased => Normals::PerCorner(corner_normals(mesh, shading.crease_deg)),
         };
         let places = colouring.map(|colouring| colouring.places(mesh)).transpose()?;
         Ok(Surface { positions: &mesh.positions, triangles: &mesh.triangles, normals, places })
@@ -84,6 +85,7 @@ impl<'a> Surface<'a> {
         let normals = match &self.normals {
             Normals::PerVertex(normals) => normals,
             Normals::PerTriangle(normals) => &normals[..],
+            Normals::PerCorner(of) => &of.normals[..],
         };
         Lit(normals.iter().map(|&n| shading.exposure(n)).collect())
     }
@@ -95,6 +97,7 @@ impl<'a> Surface<'a> {
         let exposures = match &self.normals {
             Normals::PerVertex(_) => vertices().map(|v| lit.0[v]),
             Normals::PerTriangle(_) => [lit.0[triangle]; 3],
+            Normals::PerCorner(of) => of.corners[triangle].map(|place| lit.0[place as usize]),
         };
         let places = match &self.places {
             None => [0.0; 3],

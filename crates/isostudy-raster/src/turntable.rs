@@ -3,7 +3,7 @@
 use crate::{Camera, RasterError, Viewport};
 use glam::Vec3;
 
-/// A camera that circles the origin once, and the pictures it takes.
+/// A camera that circles the z axis once, and the pictures it takes.
 ///
 /// The defaults are the GIF tool's of Costen (2026) for the sphere; per object the author changed `distance` and
 /// `vertical_fov_rad` (asteroid 1.6 and 60 deg; bunny 1.2 and 50 deg).
@@ -17,7 +17,9 @@ pub struct Turntable {
     pub frames: u32,
     /// Nominal length of a turn, seconds; the delay between frames is cut to whole centiseconds.
     pub duration_s: f64,
-    /// The original's distance parameter D. The eye is [`Turntable::eye_distance`] from the origin, which is more.
+    /// Height of the circle's middle over the origin, which is in the middle of the picture; 0 as published.
+    pub middle_z: f32,
+    /// The original's distance parameter D. The eye is [`Turntable::eye_distance`] from the middle, which is more.
     pub distance: f32,
     /// The original's elevation parameter u, radians. The eye stands lower: [`Turntable::eye_elevation_rad`].
     pub elevation_rad: f32,
@@ -38,6 +40,7 @@ impl Default for Turntable {
             height: 512,
             frames: 120,
             duration_s: 8.0,
+            middle_z: 0.0,
             distance: 1.2,
             elevation_rad: std::f32::consts::PI / 6.0,
             vertical_fov_rad: 1.57,
@@ -65,7 +68,7 @@ impl Turntable {
     }
 
     /// The camera of picture `frame`: with t = 2 pi frame / frames, D `distance` and u `elevation_rad`,
-    /// `eye = D ((cos t - sin t) cos u, (sin t + cos t) cos u, sin u)`, looking at the origin, z up.
+    /// `eye = D ((cos t - sin t) cos u, (sin t + cos t) cos u, sin u)` from the middle, looking at it, z up.
     ///
     /// Seen from above the eye runs counter-clockwise, so the object seems to turn clockwise. `frame` may exceed
     /// `frames`: the turn repeats.
@@ -73,11 +76,11 @@ impl Turntable {
         let t = std::f64::consts::TAU * frame as f64 / self.frames.max(1) as f64;
         // Not the platform's sine: the same bytes on every machine.
         let ((sin_t, cos_t), (sin_u, cos_u)) = (libm::sincos(t), libm::sincos(self.elevation_rad as f64));
-        let d = self.distance as f64;
+        let (d, middle) = (self.distance as f64, Vec3::Z * self.middle_z);
         let eye = [d * (cos_t - sin_t) * cos_u, d * (sin_t + cos_t) * cos_u, d * sin_u];
         Camera {
-            eye: Vec3::from(eye.map(|v| v as f32)),
-            target: Vec3::ZERO,
+            eye: Vec3::from(eye.map(|v| v as f32)) + middle,
+            target: middle,
             up: Vec3::Z,
             vertical_fov_rad: self.vertical_fov_rad,
             near: self.near,
@@ -90,15 +93,20 @@ impl Turntable {
         Viewport { width: self.width, height: self.height, supersampling: self.supersampling }
     }
 
-    /// True distance of the eye from the origin, `D sqrt(2 cos^2 u + sin^2 u)`: 1.323 D at u = 30 deg.
+    /// True distance of the eye from the middle, `D sqrt(2 cos^2 u + sin^2 u)`: 1.323 D at u = 30 deg.
     pub fn eye_distance(&self) -> f32 {
-        self.camera(0).eye.length()
+        self.from_middle().length()
     }
 
-    /// True elevation of the eye over the xy plane, radians, `atan(tan u / sqrt 2)`: 22.2 deg at u = 30 deg.
+    /// True elevation of the eye over the middle, radians, `atan(tan u / sqrt 2)`: 22.2 deg at u = 30 deg.
     pub fn eye_elevation_rad(&self) -> f32 {
-        let eye = self.camera(0).eye;
+        let eye = self.from_middle();
         eye.z.atan2(eye.truncate().length())
+    }
+
+    fn from_middle(&self) -> Vec3 {
+        let Camera { eye, target, .. } = self.camera(0);
+        eye - target
     }
 
     /// Time between frames in centiseconds, `floor(100 duration / frames)`: 6 for 8 s in 120 frames.

@@ -21,6 +21,7 @@ pub(crate) fn turntable(section: &TurntableSection, camera: &CameraSection) -> T
         height: section.height,
         frames: section.frames,
         duration_s: section.duration_s,
+        middle_z: camera.middle_z as f32,
         distance: camera.distance as f32,
         elevation_rad: section.elevation_rad as f32,
         vertical_fov_rad: camera.vertical_fov_rad as f32,
@@ -40,6 +41,7 @@ pub(crate) fn shading(section: &ShadingSection) -> Shading {
         background: colour(section.background),
         light_follows: light_follows(section.light_follows),
         ambient: section.ambient as f32,
+        crease_deg: section.crease_deg as f32,
         ..Shading::default()
     }
 }
@@ -71,7 +73,7 @@ impl Drawn {
         error: impl FnOnce() -> Result<Colouring>,
     ) -> Result<Self> {
         let colouring = match look {
-            Look::Smooth | Look::Flat | Look::Wireframe | Look::SmoothWireframe => None,
+            Look::Smooth | Look::Flat | Look::Wireframe | Look::SmoothWireframe | Look::Creased => None,
             Look::Quality => Some(Colouring::radius_ratio(mesh)),
             Look::Error => Some(error()?),
         };
@@ -223,6 +225,7 @@ fn raster_look(look: Look) -> isostudy_raster::Look {
         Look::Flat | Look::Quality | Look::Error => isostudy_raster::Look::Flat,
         Look::Wireframe => isostudy_raster::Look::Wireframe,
         Look::SmoothWireframe => isostudy_raster::Look::SmoothWireframe,
+        Look::Creased => isostudy_raster::Look::Creased,
     }
 }
 
@@ -251,4 +254,80 @@ fn svg(panels: &[Panel<'_>]) -> String {
         );
     }
     svg + "</svg>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fields::Fields;
+    use crate::{prepare, recipe};
+    use isostudy_design::Study;
+    use isostudy_design::record::Purpose;
+    use isostudy_extract::{Execution, Extractor};
+    use isostudy_mesh::corner_normals;
+    use std::path::Path;
+
+    /// In all frames of the terrain study, by projecting the vertices: the box round each object takes at least half of the frame, and
+    /// nothing is cut off. The small study has the same cameras.
+    #[test]
+    fn terrain_fills_its_frames() {
+        let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs");
+        let study = Study::load(&configs.join("terrain.toml")).unwrap();
+        let small = Study::load(&configs.join("terrain-quick.toml")).unwrap();
+        let fields = Fields::new(&study);
+        for (index, object) in study.file.objects.iter().enumerate() {
+            let camera = |of: &CameraSection| [of.distance, of.vertical_fov_rad, of.middle_z];
+            assert_eq!(camera(&object.camera), camera(&small.file.objects[index].camera));
+            let turn = turntable(&study.file.turntable, &object.camera);
+            let made = fields.get(index).unwrap();
+            for id in ["mc", "dc-in-cell"] {
+                let id = id.parse().unwrap();
+                let recipe::Recipe::Extractor(method) =
+                    recipe::recipe(&study, id, Purpose::Stimulus).unwrap()
+                else {
+                    panic!("{id} is a program")
+                };
+                let grid = prepare::grid(object, object.stimulus_spacing);
+                let field: &dyn isostudy_field::StudyField = &*made.field;
+                let extraction = method
+                    .extract(
+                        &mut Extractor::new(),
+                        field.into(),
+                        &grid,
+                        made.isovalue,
+                        &Execution { threads: 1 },
+                    )
+                    .unwrap();
+                let mesh = extraction.mesh;
+                let viewport = turn.viewport();
+                let mut least = f32::MAX;
+                for frame in 0..turn.frames {
+                    let camera = turn.camera(frame);
+                    let (mut low, mut high) = ([f32::MAX; 2], [f32::MIN; 2]);
+                    for &position in &mesh.positions {
+                        let (at, _) = camera.project(position, &viewport).expect("between the planes");
+                        low = [0, 1].map(|k| low[k].min(at[k]));
+                        high = [0, 1].map(|k| high[k].max(at[k]));
+                    }
+                    let size = [viewport.width, viewport.height].map(|side| side as f32);
+                    assert!(low.iter().all(|v| *v > 1.0), "{}, {id}, {frame}: {low:?}", object.id);
+                    assert!(
+                        (0..2).all(|k| high[k] < size[k] - 1.0),
+                        "{}, {id}, {frame}: {high:?}",
+                        object.id
+                    );
+                    least = least.min((high[0] - low[0]) * (high[1] - low[1]) / (size[0] * size[1]));
+                }
+                let mut creased = corner_normals(&mesh, study.file.shading.crease_deg as f32).copies;
+                creased.dedup();
+                let share = 100.0 * creased.len() as f64 / mesh.positions.len() as f64;
+                println!(
+                    "{}, {id}: at least {:.0} % of a frame; {share:.0} % of vertices at creases",
+                    object.name,
+                    100.0 * least
+                );
+                assert!(least >= 0.5, "{}, {id}: {least}", object.id);
+            }
+        }
+    }
 }

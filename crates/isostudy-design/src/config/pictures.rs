@@ -39,6 +39,7 @@ impl From<StimulusLook> for Look {
             StimulusLook::Smooth => Self::Smooth,
             StimulusLook::Flat => Self::Flat,
             StimulusLook::SmoothWireframe => Self::SmoothWireframe,
+            StimulusLook::Creased => Self::Creased,
         }
     }
 }
@@ -89,6 +90,9 @@ pub struct ShadingSection {
     /// Distance at the bad end of the scale of [`Look::Error`], in spacings.
     #[serde(default = "error_scale", skip_serializing_if = "is_error_scale")]
     pub error_scale: f64,
+    /// Degrees by which two triangles turn at an edge that [`Look::Creased`] keeps sharp, at least.
+    #[serde(default = "crease_deg", skip_serializing_if = "is_crease_deg")]
+    pub crease_deg: f64,
 }
 
 /// A tenth of a spacing: what is off by more is seen in the shape.
@@ -98,6 +102,15 @@ fn error_scale() -> f64 {
 
 fn is_error_scale(value: &f64) -> bool {
     *value == error_scale()
+}
+
+/// Below the 45 degrees of a right angle that is bevelled evenly, so that the bevel is seen.
+fn crease_deg() -> f64 {
+    40.0
+}
+
+fn is_crease_deg(value: &f64) -> bool {
+    *value == crease_deg()
 }
 
 /// A key that was left out, or might as well have been, is not written: digests of what was made before there was such a
@@ -122,6 +135,8 @@ pub enum Look {
     Quality,
     /// Each triangle in the colour of its distance to the isosurface, with a scale.
     Error,
+    /// Smooth, but sharp over edges that turn by `shading.crease_deg` or more.
+    Creased,
 }
 
 impl Look {
@@ -134,6 +149,7 @@ impl Look {
             Self::SmoothWireframe => "smooth + wireframe",
             Self::Quality => "quality of triangles",
             Self::Error => "error of triangles",
+            Self::Creased => "smooth with creases",
         }
     }
 
@@ -146,6 +162,7 @@ impl Look {
             Self::SmoothWireframe => "smooth-wireframe",
             Self::Quality => "quality",
             Self::Error => "error",
+            Self::Creased => "creased",
         }
     }
 }

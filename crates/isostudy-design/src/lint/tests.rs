@@ -153,6 +153,19 @@ fn a_method_that_is_asked_about_less_often() {
     assert_eq!(faults[0].evidence, "asked about as_bi 2 times, ss_bi 1 times");
 }
 
+/// A group need not be asked about every object, but on each that it is, about all of its methods.
+#[test]
+fn a_group_that_is_asked_about_some_objects() {
+    let mut study = balanced();
+    let b = study.groups.iter().position(|group| group.id == "B").unwrap();
+    keep(&mut study, |c| c.group != b || c.object == 1);
+    let unequal = |study: &Study| rules(&lint(study)).contains(&Rule::AppearancesUnequal);
+    assert!(!unequal(&study), "{:?}", lint(&study));
+    let first = study.comparisons.iter().find(|c| c.group == b).unwrap().question.clone();
+    keep(&mut study, |c| c.question != first);
+    assert!(unequal(&study), "{:?}", lint(&study));
+}
+
 #[test]
 fn methods_that_are_never_compared() {
     let mut study = balanced();

@@ -63,6 +63,7 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
     }
     c.number("shading.ambient", s.ambient, 0.0, 1.0)?;
     c.positive("shading.error_scale", s.error_scale, 10.0)?;
+    c.number("shading.crease_deg", s.crease_deg, 0.0, 180.0)?;
     c.count("stimuli.pair_scale", file.stimuli.pair_scale, 1, 4)?;
     file.viewer.as_ref().map_or(Ok(()), |viewer| viewer.check(c))?;
 
@@ -151,6 +152,7 @@ pub(super) fn check_objects(c: &Checker<'_>, objects: &[ObjectSection]) -> Resul
         c.length(&key("benchmark_spacing"), object.benchmark_spacing, 1e6)?;
         c.length(&key("stimulus_spacing"), object.stimulus_spacing, 1e6)?;
         c.positive(&key("camera.distance"), object.camera.distance, 1e6)?;
+        c.number(&key("camera.middle_z"), object.camera.middle_z, -1e6, 1e6)?;
         c.number(&key("camera.vertical_fov_rad"), object.camera.vertical_fov_rad, 0.01, 3.1)?;
         check_field(c, &key("field"), &object.field)?;
     }

@@ -142,21 +142,25 @@ fn looks_and_light_are_as_published_unless_said_otherwise() {
         (file.turntable.look, file.shading.light_follows),
         (StimulusLook::Smooth, LightFollows::Scene)
     );
-    assert_eq!((file.shading.ambient, file.shading.error_scale), (0.0, 0.1));
+    assert_eq!((file.shading.ambient, file.shading.error_scale, file.shading.crease_deg), (0.0, 0.1, 40.0));
     // What the digests of stages are made of has not changed for a study that does not set them.
     let written = serde_json::to_string(&(&file.turntable, &file.shading, &file.stills)).unwrap();
-    for key in ["look\"", "light_follows", "ambient", "error_scale", "turntable"] {
+    for key in ["look\"", "light_follows", "ambient", "error_scale", "crease_deg", "turntable"] {
         assert!(!written.contains(key), "{key} in {written}");
     }
 
     let set = "supersampling = 2\nlook = \"flat\"\n";
-    let light = "[shading]\nlight_follows = \"camera\"\nambient = 0.25\nerror_scale = 0.5\n";
+    let light = "[shading]\nlight_follows = \"camera\"\nambient = 0.25\nerror_scale = 0.5\ncrease_deg = 30\n";
     let file = paper_with("supersampling = 2\n\n[shading]\n", &format!("{set}{light}")).unwrap().file;
     assert_eq!((file.turntable.look, file.shading.light_follows), (StimulusLook::Flat, LightFollows::Camera));
     let written = serde_json::to_string(&(&file.turntable, &file.shading)).unwrap();
-    for said in
-        ["\"look\":\"flat\"", "\"light_follows\":\"camera\"", "\"ambient\":0.25", "\"error_scale\":0.5"]
-    {
+    for said in [
+        "\"look\":\"flat\"",
+        "\"light_follows\":\"camera\"",
+        "\"ambient\":0.25",
+        "\"error_scale\":0.5",
+        "\"crease_deg\":30.0",
+    ] {
         assert!(written.contains(said), "{said} not in {written}");
     }
     let looks = "looks = [\"quality\", \"error\"]\nturntable = true";
@@ -175,22 +179,24 @@ fn unknown_looks_and_lights_are_told_what_there_is() {
     let says = |error: String, parts: &[&str]| {
         assert!(parts.iter().all(|part| error.contains(part)), "{error}");
     };
-    let allowed = ["`smooth`, `flat`, `smooth-wireframe`"];
+    let allowed = ["`smooth`, `flat`, `smooth-wireframe`, `creased`"];
     says(syntax(with("look = \"wireframe\"\n[shading]")), &allowed);
     says(syntax(with("look = \"quality\"\n[shading]")), &allowed);
     says(syntax(with("[shading]\nlight_follows = \"eye\"")), &["light_follows", "`scene` or `camera`"]);
     let error = syntax(paper_with("looks = [\"smooth\",", "looks = [\"shape\","));
-    says(error, &["shape", "`quality`, `error`"]);
+    says(error, &["shape", "`quality`, `error`, `creased`"]);
     assert_eq!(refused(with("[shading]\nambient = 1.5")), "shading.ambient = 1.5");
     assert_eq!(refused(with("[shading]\nambient = nan")), "shading.ambient = NaN");
     assert_eq!(refused(with("[shading]\nerror_scale = 0.0")), "shading.error_scale = 0");
+    assert_eq!(refused(with("[shading]\ncrease_deg = 181")), "shading.crease_deg = 181");
+    assert_eq!(refused(with("[shading]\ncrease_deg = -1")), "shading.crease_deg = -1");
 }
 
 /// A look's name is the word that the study file has for it.
 #[test]
 fn looks_are_named_as_in_the_file() {
-    use crate::config::Look::{Error, Flat, Quality, Smooth, SmoothWireframe, Wireframe};
-    for look in [Smooth, Flat, Wireframe, SmoothWireframe, Quality, Error] {
+    use crate::config::Look::{Creased, Error, Flat, Quality, Smooth, SmoothWireframe, Wireframe};
+    for look in [Smooth, Flat, Wireframe, SmoothWireframe, Quality, Error, Creased] {
         assert_eq!(serde_json::to_value(look).unwrap(), look.name());
     }
 }

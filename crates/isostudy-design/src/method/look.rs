@@ -13,4 +13,6 @@ pub enum StimulusLook {
     Flat,
     /// Smooth with triangle edges on top.
     SmoothWireframe,
+    /// Smooth, but sharp over edges that turn by `shading.crease_deg` or more.
+    Creased,
 }

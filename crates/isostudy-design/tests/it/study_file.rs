@@ -311,6 +311,7 @@ fn full_study() -> StudyFile {
             light_follows: LightFollows::Camera,
             ambient: 1.0,
             error_scale: 1.0,
+            crease_deg: 1.0,
         },
         stimuli: StimuliSection { pair_scale: 1 },
         stills: vec![StillSection {
@@ -442,7 +443,7 @@ fn object(field: FieldSection) -> ObjectSection {
         max: [0.0; 3],
         benchmark_spacing: 1.0,
         stimulus_spacing: 1.0,
-        camera: CameraSection { distance: 1.0, vertical_fov_rad: 1.0 },
+        camera: CameraSection { distance: 1.0, vertical_fov_rad: 1.0, middle_z: 1.0 },
     }
 }
 

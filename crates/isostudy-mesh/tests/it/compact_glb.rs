@@ -2,7 +2,9 @@
 
 use crate::shapes::*;
 use isostudy_mesh::glam::{DVec3, Vec3};
-use isostudy_mesh::{CompactNumbers, Per, TriangleMesh, normals, write_compact_glb, write_glb};
+use isostudy_mesh::{
+    CompactNumbers, Per, TriangleMesh, corner_normals, normals, write_compact_glb, write_glb,
+};
 use serde_json::Value;
 
 /// The document and the buffer.
@@ -22,7 +24,7 @@ fn parts(bytes: &[u8]) -> (Value, Vec<u8>) {
 
 fn written(mesh: &TriangleMesh, numbers: &[CompactNumbers<'_>]) -> (Value, Vec<u8>) {
     let mut bytes = Vec::new();
-    write_compact_glb(mesh, numbers, &mut bytes).unwrap();
+    write_compact_glb(mesh, &[], numbers, &mut bytes).unwrap();
     parts(&bytes)
 }
 
@@ -174,7 +176,7 @@ fn it_is_about_half_of_the_plain_file() {
     ring.normals = normals::area_weighted_normals(&ring.positions, &ring.triangles);
     let (mut plain, mut compact) = (Vec::new(), Vec::new());
     write_glb(&ring, &mut plain).unwrap();
-    write_compact_glb(&ring, &[], &mut compact).unwrap();
+    write_compact_glb(&ring, &[], &[], &mut compact).unwrap();
     assert!(compact.len() * 100 < plain.len() * 55, "{} of {}", compact.len(), plain.len());
 }
 
@@ -195,7 +197,7 @@ fn a_mesh_without_extent_or_triangles_is_written() {
 #[test]
 fn what_cannot_be_said_is_refused() {
     let told = |mesh: &TriangleMesh, numbers: &[CompactNumbers<'_>]| {
-        let error = write_compact_glb(mesh, numbers, Vec::new()).unwrap_err();
+        let error = write_compact_glb(mesh, &[], numbers, Vec::new()).unwrap_err();
         assert_eq!(error.kind(), std::io::ErrorKind::InvalidInput);
         error.to_string()
     };
@@ -216,4 +218,43 @@ fn what_cannot_be_said_is_refused() {
         assert!(told(&ball, &list("distance", &values)).contains("distance"), "{bad}");
     }
     assert!(told(&ball, &list("dis\"tance", &[Some(1.0); 20])).contains("underscores"));
+}
+
+/// A box of the unit cube's sides: corners point along the axes from the copies, and away from the middle from what they are of.
+#[test]
+fn copies_have_creases_and_lead_back_to_smooth_normals() {
+    let corner = |i: usize| Vec3::from([i & 1, i >> 1 & 1, i >> 2].map(|bit| bit as f32 - 0.5));
+    let positions: Vec<Vec3> = (0..8).map(corner).collect();
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles: Vec<[u32; 3]> =
+        sides.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let normals = positions.iter().map(|p| p.normalize()).collect();
+    let mesh = TriangleMesh { positions, normals, triangles };
+    let made = corner_normals(&mesh, 40.0);
+    let all = made.with_copies(&mesh);
+    let angles = vec![Some(1.0); 8];
+    let numbers = [CompactNumbers { name: "angle", per: Per::Vertex, values: &angles }];
+    let mut bytes = Vec::new();
+    write_compact_glb(&all, &made.copies, &numbers, &mut bytes).unwrap();
+    let (document, buffer) = parts(&bytes);
+    assert_is(&all, &document, &buffer);
+    let primitive = &document["meshes"][0]["primitives"][0];
+    let copies = read(&document, &buffer, &document["meshes"][0]["extras"]["copies"]["accessor"]);
+    let normals = read(&document, &buffer, &primitive["attributes"]["NORMAL"]);
+    assert_eq!((copies.len(), normals.len()), (24, 32));
+    let indices = read(&document, &buffer, &primitive["indices"]);
+    for (index, &vertex) in indices.iter().zip(mesh.triangles.as_flattened()) {
+        let index = index[0] as usize;
+        let along: Vec<i64> = normals[index].iter().map(|n| n.abs()).collect();
+        assert_eq!(along.iter().filter(|n| **n == 127).count(), 1, "{along:?}");
+        assert_eq!(along.iter().sum::<i64>(), 127, "{along:?}");
+        let of = copies[index - 8][0] as u32;
+        assert_eq!(of, vertex);
+        let want = mesh.normals[of as usize].to_array().map(|n| (n * 127.0).round() as i64);
+        assert_eq!(normals[of as usize], want);
+    }
+    let error = write_compact_glb(&all, &[0; 24], &numbers, Vec::new()).unwrap_err();
+    assert_eq!(error.to_string(), "vertex 11 is no copy of 0");
+    let error = write_compact_glb(&all, &[0; 33], &[], Vec::new()).unwrap_err();
+    assert_eq!(error.to_string(), "33 copies among 32 vertices");
 }

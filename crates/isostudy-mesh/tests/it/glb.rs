@@ -2,7 +2,7 @@
 
 use crate::shapes::*;
 use isostudy_mesh::glam::Vec3;
-use isostudy_mesh::{TriangleMesh, normals, write_glb};
+use isostudy_mesh::{TriangleMesh, corner_normals, normals, weld, write_glb};
 use serde_json::{Value, json};
 
 fn word(bytes: &[u8], at: usize) -> usize {
@@ -98,4 +98,47 @@ fn what_gltf_cannot_say_is_refused() {
     ] {
         assert_eq!(write_glb(&mesh, Vec::new()).unwrap_err().to_string(), want);
     }
+}
+
+/// A cylinder whose rims are shared: in the file each corner has the normal of the cylinder's equation, outward on the side and along the
+/// axis on the caps, and vertices at one place are one again by their positions alone.
+#[test]
+fn creases_are_split_vertices() {
+    const STEPS: u32 = 24;
+    let mut mesh = TriangleMesh { positions: vec![Vec3::NEG_Z, Vec3::Z], ..TriangleMesh::default() };
+    for i in 0..STEPS {
+        let (sin, cos) = (std::f32::consts::TAU * i as f32 / STEPS as f32).sin_cos();
+        mesh.positions.extend([-1.0, 1.0].map(|z| Vec3::new(cos, sin, z)));
+    }
+    let at = |i: u32, top: u32| 2 + 2 * (i % STEPS) + top;
+    for i in 0..STEPS {
+        let [a, b, c, d] = [at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 1)];
+        mesh.triangles.extend([[a, b, c], [a, c, d], [0, b, a], [1, d, c]]);
+    }
+    mesh.normals = normals::area_weighted_normals(&mesh.positions, &mesh.triangles);
+    let (document, buffer) = parts(&corner_normals(&mesh, 40.0).split(&mesh));
+    let primitive = &document["meshes"][0]["primitives"][0];
+    let vectors = |name: &str| -> Vec<Vec3> {
+        let floats = values(&document, &buffer, &primitive["attributes"][name]);
+        floats.chunks(3).map(|v| Vec3::from([0, 1, 2].map(|k| f32::from_le_bytes(v[k])))).collect()
+    };
+    let (positions, normals) = (vectors("POSITION"), vectors("NORMAL"));
+    assert_eq!(positions.len() as u32, 2 + 4 * STEPS, "a vertex of a rim is there twice");
+    let indices: Vec<usize> = values(&document, &buffer, &primitive["indices"])
+        .into_iter()
+        .map(|index| u32::from_le_bytes(index) as usize)
+        .collect();
+    for (corners, triangle) in indices.chunks(3).zip(&mesh.triangles) {
+        let [a, b, c] = [0, 1, 2].map(|k| positions[corners[k]]);
+        let is_cap = (b - a).cross(c - a).normalize().z.abs() > 0.5;
+        for (&corner, &vertex) in corners.iter().zip(triangle) {
+            let p = positions[corner];
+            let want = if is_cap { Vec3::Z * p.z } else { Vec3::new(p.x, p.y, 0.0) };
+            assert!(normals[corner].distance(want) < 1e-5, "{} is not {want}", normals[corner]);
+            assert_eq!(p, mesh.positions[vertex as usize]);
+        }
+    }
+    let triangles = indices.chunks(3).map(|t| [0, 1, 2].map(|k| t[k] as u32)).collect();
+    let welded = weld(&TriangleMesh { positions, normals: Vec::new(), triangles });
+    assert_eq!((welded.positions, welded.triangles), (mesh.positions, mesh.triangles));
 }

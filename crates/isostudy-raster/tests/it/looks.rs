@@ -48,6 +48,118 @@ fn a_flat_side_has_one_shade() {
     assert!(colours(&picture(Look::Smooth)).len() > 100);
 }
 
+/// Pictures from all around, whole bytes.
+fn turn(mesh: &TriangleMesh, shading: &Shading, look: Look) -> Vec<Vec<u8>> {
+    let picture =
+        |frame| render(mesh, &settings().camera(frame), ONE_SAMPLE, shading, look).unwrap().data().to_vec();
+    (0..8).map(picture).collect()
+}
+
+/// The flat cube is the authority: every edge of it turns by 90 degrees.
+#[test]
+fn a_creased_cube_is_the_flat_cube() {
+    let (mesh, shading) = (cube(), Shading::default());
+    let creased = turn(&mesh, &shading, Look::Creased);
+    assert_eq!(creased, turn(&mesh, &shading, Look::Flat));
+    assert_ne!(creased, turn(&mesh, &shading, Look::Smooth));
+    // With edges beyond the angle, the smooth cube.
+    let dull = Shading { crease_deg: 95.0, ..shading };
+    assert_eq!(turn(&mesh, &dull, Look::Creased), turn(&mesh, &dull, Look::Smooth));
+    let flat = |mesh, look| turntable(mesh, &settings(), &shading, look, &|| ()).unwrap();
+    assert_eq!(flat(&mesh, Look::Creased), flat(&mesh, Look::Flat));
+}
+
+/// No edge of these turns by 40 degrees, so the mesh's own normals are shown, to the bit.
+#[test]
+fn what_is_smooth_stays_as_it_is() {
+    let shading = Shading::default();
+    for mesh in [shapes::sphere(1.0, 16), shapes::torus(0.7, 0.3, 30, 14)] {
+        assert_eq!(turn(&mesh, &shading, Look::Creased), turn(&mesh, &shading, Look::Smooth));
+        assert_ne!(turn(&mesh, &shading, Look::Creased), turn(&mesh, &shading, Look::Flat));
+    }
+}
+
+/// A closed cylinder with shared rims, from above its corner: the colour of each pixel against the cylinder's own normal there.
+#[test]
+fn a_cylinder_is_shaded_as_its_equation_says() {
+    const STEPS: u32 = 180;
+    let mut mesh = TriangleMesh { positions: vec![Vec3::NEG_Z, Vec3::Z], ..TriangleMesh::default() };
+    for i in 0..STEPS {
+        let (sin, cos) = (std::f32::consts::TAU * i as f32 / STEPS as f32).sin_cos();
+        mesh.positions.extend([-1.0, 1.0].map(|z| Vec3::new(cos, sin, z)));
+    }
+    let at = |i: u32, top: u32| 2 + 2 * (i % STEPS) + top;
+    for i in 0..STEPS {
+        let [a, b, c, d] = [at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 1)];
+        mesh.triangles.extend([[a, b, c], [a, c, d], [0, b, a], [1, d, c]]);
+    }
+    mesh.normals = mesh.positions.iter().map(|p| p.normalize()).collect();
+    let (camera, shading) = (Camera::around(&mesh.bounds().unwrap()), Shading::default());
+    let worst = |look| {
+        let picture = render(&mesh, &camera, ONE_SAMPLE, &shading, look).unwrap();
+        let mut worst = 0.0f32;
+        let mut seen = [0; 2];
+        for (x, y) in (0..96).flat_map(|x| (0..96).map(move |y| (x, y))) {
+            let Some((point, normal)) = first_hit(&camera, [x as f32 + 0.5, y as f32 + 0.5]) else {
+                continue;
+            };
+            // Not where a pixel may fall to the other side of an outline or a rim.
+            let turned = normal.dot((point - camera.eye).normalize()).abs() < 0.2;
+            if turned || (point.z.abs() - 1.0).abs() < 0.04 && point.truncate().length() > 0.96 {
+                continue;
+            }
+            seen[usize::from(normal.z > 0.5)] += 1;
+            let p = picture.pixels()[y * 96 + x];
+            let want = shading.colour(shading.exposure(normal)).map(|v| v * 255.0);
+            let found = [p.red(), p.green(), p.blue()].map(f32::from);
+            worst = (0..3).fold(worst, |worst, c| worst.max((found[c] - want[c]).abs()));
+        }
+        assert!(seen[0] > 800 && seen[1] > 200, "{seen:?}");
+        worst
+    };
+    let (creased, smooth) = (worst(Look::Creased), worst(Look::Smooth));
+    assert!(creased < 3.5 && smooth > 40.0, "{creased} and {smooth} levels");
+}
+
+/// Where the ray through a point of the picture meets the cylinder of radius 1 from z = -1 to 1, and its normal there.
+fn first_hit(camera: &Camera, [x, y]: [f32; 2]) -> Option<(Vec3, Vec3)> {
+    let forward = (camera.target - camera.eye).normalize();
+    let right = forward.cross(camera.up).normalize();
+    let slope = (camera.vertical_fov_rad * 0.5).tan() / 48.0;
+    let way = forward + (right * (x - 48.0) - right.cross(forward) * (y - 48.0)) * slope;
+    let (eye, level) = (camera.eye, way.truncate());
+    let up = (1.0 - eye.z) / way.z;
+    let on_top = eye + way * up;
+    if on_top.truncate().length() <= 1.0 {
+        return Some((on_top, Vec3::Z));
+    }
+    let half = eye.truncate().dot(level);
+    let inside = half * half - level.length_squared() * (eye.truncate().length_squared() - 1.0);
+    let at = eye + way * ((-half - inside.max(0.0).sqrt()) / level.length_squared());
+    (inside > 0.0 && at.z.abs() <= 1.0).then(|| (at, Vec3::new(at.x, at.y, 0.0)))
+}
+
+/// Frames are drawn by as many threads as there are; their bytes are one thread's.
+#[test]
+fn creased_turntables_are_the_same_on_any_threads() {
+    let mesh = cube();
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| turntable(&mesh, &settings(), &Shading::default(), Look::Creased, &|| ()).unwrap())
+    };
+    assert_eq!(on(1), on(3));
+}
+
+#[test]
+fn a_crease_is_an_angle() {
+    for value in [-1.0, 180.5, f32::NAN] {
+        let shading = Shading { crease_deg: value, ..Shading::default() };
+        let error = turntable(&cube(), &settings(), &shading, Look::Creased, &|| ()).unwrap_err();
+        assert!(error.to_string().starts_with("crease_deg is"), "{error}");
+        assert!(error.to_string().ends_with("allowed is 0 to 180"), "{error}");
+    }
+}
+
 /// Mean brightness of each frame's surface.
 fn brightness(animation: &Animation) -> Vec<f64> {
     let mean = |frame: usize| {
@@ -237,6 +349,7 @@ fn two_looks_pair_in_a_palette_that_both_have() {
     let (turn, shading) = (settings(), Shading::default());
     let alone = |look| turntable(&mesh, &turn, &shading, look, &|| ()).unwrap();
     assert!(alone(Look::Smooth).side_by_side(&alone(Look::Flat)).is_ok());
+    assert!(alone(Look::Smooth).side_by_side(&alone(Look::Creased)).is_ok());
     assert!(alone(Look::Smooth).side_by_side(&alone(Look::SmoothWireframe)).is_err());
     let looks = [Look::Smooth, Look::SmoothWireframe];
     let palette = Palette::of_looks(&shading, &looks);

@@ -9,6 +9,7 @@ mod quality_report;
 use super::named::named;
 use super::source_arguments::SourceArguments;
 use super::study_run::{Run, Selection, with_selection};
+use super::turntable::crease;
 use crate::outcome::Outcome;
 use crate::place::place;
 use crate::source::Source;
@@ -20,7 +21,7 @@ use clap::{ArgGroup, Args};
 use isostudy_design::record::Counts;
 use isostudy_extract::{Arrangement, Clustering, Execution, Extraction, Extractor, Method, Tetrahedra};
 use isostudy_field::{Counted, FieldCache, StudyField};
-use isostudy_mesh::TriangleMesh;
+use isostudy_mesh::{MeshFormat, TriangleMesh, corner_normals};
 use isostudy_raster::{Camera, Look, Shading, Viewport};
 use isovalues::Isovalues;
 use quality_report::{Cells, QualityReport};
@@ -36,6 +37,7 @@ Examples:
   isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb --quality
   isostudy extract --labels organs.seg.nrrd --only 2,5 -o organs.glb
   isostudy extract --volume head.nrrd --isovalues 100:1500:15 -o 'head-{isovalue}.ply' --method mc
+  isostudy extract --field 'max(abs(x), max(abs(y), abs(z))) - 1' --bounds=-2,-2,-2,2,2,2 -o box.glb --method dc-in-cell --crease-deg 40
   isostudy extract --mesh scan.stl --cells 200 -o even.obj --picture even.png --method bi-relaxed
   isostudy extract configs/paper.toml --only ss_bi")]
 pub(crate) struct Arguments {
@@ -71,6 +73,10 @@ pub(crate) struct Arguments {
     /// Draw the surface as well, z up, 800 pixels square
     #[arg(long, value_name = "PNG", conflicts_with = "study")]
     picture: Option<PathBuf>,
+    /// Keep edges sharp at which triangles turn by so many degrees or more, such as 40: in a .glb, where their vertices are split,
+    /// and in the picture [default: all normals are smooth]
+    #[arg(long, value_name = "DEGREES", value_parser = crease, conflicts_with_all = ["study", "labels", "isovalues"])]
+    crease_deg: Option<f32>,
     /// Print what the mesh is worth: triangles, topology, distance to the surface
     #[arg(long, conflicts_with = "study")]
     quality: bool,
@@ -153,6 +159,9 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     }
     let format = mesh_file::format_to_write(out).with_context(|| out.display().to_string())?;
     check_outputs(arguments, out)?;
+    if arguments.crease_deg.is_some() && format != MeshFormat::Glb && arguments.picture.is_none() {
+        bail!("--crease-deg is for .glb and --picture: in {} vertices are not split", out.display());
+    }
     let method = arguments.method();
     let execution = Execution { threads: arguments.threads as usize };
     let volume = arguments.source.volume_alone().filter(|_| method.is_of_cubes());
@@ -170,11 +179,19 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     }
     write_whole_by(out, |file| {
         let mut buffered = BufWriter::new(file);
-        format.write(&extraction.mesh, &mut buffered)?;
+        match arguments.crease_deg.filter(|_| format == MeshFormat::Glb) {
+            Some(crease) => {
+                format.write(
+                    &corner_normals(&extraction.mesh, crease).split(&extraction.mesh),
+                    &mut buffered,
+                )?;
+            }
+            None => format.write(&extraction.mesh, &mut buffered)?,
+        }
         buffered.flush()
     })?;
     if let Some(path) = &arguments.picture {
-        write_whole(path, &picture(&extraction.mesh)?)?;
+        write_whole(path, &picture(&extraction.mesh, arguments.crease_deg)?)?;
     }
     // The report has it.
     if !arguments.json {
@@ -254,11 +271,14 @@ fn check_outputs(arguments: &Arguments, out: &Path) -> Result<()> {
     Ok(())
 }
 
-fn picture(mesh: &TriangleMesh) -> Result<Vec<u8>> {
+fn picture(mesh: &TriangleMesh, crease_deg: Option<f32>) -> Result<Vec<u8>> {
     let bounds = mesh.bounds().context("there is nothing to draw")?;
     let viewport = Viewport { width: 800, height: 800, supersampling: 2 };
-    let picture =
-        isostudy_raster::render(mesh, &Camera::around(&bounds), viewport, &Shading::default(), Look::Smooth)?;
+    let (shading, look) = match crease_deg {
+        None => (Shading::default(), Look::Smooth),
+        Some(crease_deg) => (Shading { crease_deg, ..Shading::default() }, Look::Creased),
+    };
+    let picture = isostudy_raster::render(mesh, &Camera::around(&bounds), viewport, &shading, look)?;
     Ok(isostudy_raster::pixmap_to_png(&picture))
 }
 

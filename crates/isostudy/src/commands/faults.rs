@@ -67,17 +67,16 @@ pub(super) fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Ve
     let read = |(file, configuration): (&PathBuf, &Configuration)| {
         let made = made_with(&results.join(MadeWith::file(&configuration.id)))?;
         let current = made.as_ref() == Some(&MadeWith::of(study, configuration));
-        let facts = fact(file, made.map(|made| made.camera)).with_context(|| file.display().to_string())?;
-        Ok((facts, current))
+        let named = || file.display().to_string();
+        let bytes = std::fs::read(file).with_context(named)?;
+        let animation = Animation::read_gif(bytes.as_slice()).with_context(named)?;
+        let texts = isostudy_raster::gif_texts(&bytes);
+        let facts = fact(file_name(file), &animation, made.map(|made| made.camera), texts);
+        Ok((facts, filled(&animation), current))
     };
-    let (facts, current): (Vec<StimulusFacts>, Vec<bool>) = files
-        .par_iter()
-        .zip(&study.configurations)
-        .map(read)
-        .collect::<Result<Vec<_>>>()?
-        .into_iter()
-        .unzip();
-    let outdated = current.iter().filter(|&&current| !current).count();
+    let read: Vec<(StimulusFacts, f64, bool)> =
+        files.par_iter().zip(&study.configurations).map(read).collect::<Result<_>>()?;
+    let outdated = read.iter().filter(|(_, _, current)| !current).count();
     if outdated > 0 {
         tell!(
             "{outdated} of {} in {} were made with other settings than the study file has now and are judged as \
@@ -86,7 +85,11 @@ pub(super) fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Ve
             results.display()
         );
     }
-    let by_id: HashMap<_, _> = study.configurations.iter().map(|c| &c.id).zip(&facts).collect();
+    if let Some(told) = wasted(study, &read.iter().map(|(_, filled, _)| *filled).collect::<Vec<_>>()) {
+        tell!("{told}");
+    }
+    let by_id: HashMap<_, _> =
+        study.configurations.iter().map(|c| &c.id).zip(read.iter().map(|(facts, _, _)| facts)).collect();
     let mut pairs = Vec::new();
     for stimulus in study.stimuli() {
         let (left, right) = (by_id[&stimulus.left], by_id[&stimulus.right]);
@@ -146,11 +149,51 @@ fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-fn fact(path: &Path, camera: Option<[f64; 3]>) -> Result<StimulusFacts> {
-    let bytes = std::fs::read(path)?;
-    let animation = Animation::read_gif(bytes.as_slice())?;
+/// The index that shows no surface.
+fn background(animation: &Animation) -> u8 {
+    animation.frames.first().and_then(|frame| frame.first()).map_or(0, |&index| index)
+}
+
+/// The least share of a frame, over all frames, that the box round the surface takes.
+fn filled(animation: &Animation) -> f64 {
+    let (width, behind) = (animation.width as usize, background(animation));
+    let of_frame = |frame: &Vec<u8>| {
+        let rows: Vec<&[u8]> = frame.chunks(width).collect();
+        let is_used = |row: &&[u8]| row.iter().any(|&index| index != behind);
+        let high = rows
+            .iter()
+            .position(is_used)
+            .map(|top| rows.len() - top - rows.iter().rev().position(is_used).unwrap_or(0));
+        let is_column_used = |x: &usize| rows.iter().any(|row| row[*x] != behind);
+        let left = (0..width).find(is_column_used).unwrap_or(0);
+        let right = (0..width).rev().find(is_column_used).map_or(0, |x| x + 1);
+        (high.unwrap_or(0) * (right - left)) as f64 / frame.len() as f64
+    };
+    animation.frames.iter().map(of_frame).fold(1.0, f64::min)
+}
+
+/// Objects that leave more than half of a frame empty, by configuration in the order of the study; no fault, since an object may be long.
+fn wasted(study: &Study, filled: &[f64]) -> Option<String> {
+    let of_object = |object: usize| {
+        let own = study.configurations.iter().zip(filled).filter(|(c, _)| c.object == object);
+        own.map(|(_, share)| *share).fold(1.0, f64::min)
+    };
+    let objects: Vec<String> = (0..study.file.objects.len())
+        .map(|object| (&study.file.objects[object].id, of_object(object)))
+        .filter(|(_, share)| *share < 0.5)
+        .map(|(id, share)| format!("{id} {:.0} %", 100.0 * share))
+        .collect();
+    (!objects.is_empty()).then(|| {
+        format!(
+            "the box round the object takes less than half of a frame, at least: {}; a smaller camera.distance shows more of it",
+            objects.join(", ")
+        )
+    })
+}
+
+fn fact(file: String, animation: &Animation, camera: Option<[f64; 3]>, text: Vec<String>) -> StimulusFacts {
     let colours = animation.palette.colours();
-    let corner = animation.frames.first().and_then(|frame| frame.first()).map_or(0, |&index| index);
+    let corner = background(animation);
     let mut counts = [0u64; 256];
     animation.frames.iter().flatten().for_each(|&index| counts[usize::from(index)] += 1);
     counts[usize::from(corner)] = 0;
@@ -158,8 +201,8 @@ fn fact(path: &Path, camera: Option<[f64; 3]>) -> Result<StimulusFacts> {
     let luminance =
         |[r, g, b]: [u8; 3]| (0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)) / 255.0;
     let sum: f64 = colours.iter().zip(counts).map(|(&colour, count)| luminance(colour) * count as f64).sum();
-    Ok(StimulusFacts {
-        file: file_name(path),
+    StimulusFacts {
+        file,
         frames: animation.frames.len() as u32,
         duration_cs: animation.frames.len() as u32 * u32::from(animation.delay_cs),
         size: [animation.width, animation.height],
@@ -167,6 +210,42 @@ fn fact(path: &Path, camera: Option<[f64; 3]>) -> Result<StimulusFacts> {
         camera,
         palette: colours.to_vec(),
         exposure: if total == 0 { 0.0 } else { sum / total as f64 },
-        text: isostudy_raster::gif_texts(&bytes),
-    })
+        text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isostudy_raster::{Look, Shading, Turntable, turntable};
+
+    /// A ball whose picture is as high as the frame less what the eye's distance takes: its box is known from the angle at the eye.
+    #[test]
+    fn a_ball_fills_what_its_angle_says() {
+        let mut mesh = isostudy_mesh::TriangleMesh::default();
+        let (rings, around) = (24u32, 48u32);
+        for ring in 0..=rings {
+            let (sin, cos) = (std::f32::consts::PI * ring as f32 / rings as f32).sin_cos();
+            for i in 0..around {
+                let (y, x) = (std::f32::consts::TAU * i as f32 / around as f32).sin_cos();
+                mesh.positions.push(glam::Vec3::new(sin * x, sin * y, cos));
+            }
+        }
+        let at = |ring: u32, i: u32| ring * around + i % around;
+        for (ring, i) in (0..rings).flat_map(|ring| (0..around).map(move |i| (ring, i))) {
+            mesh.triangles.push([at(ring, i), at(ring + 1, i), at(ring + 1, i + 1)]);
+            mesh.triangles.push([at(ring, i), at(ring + 1, i + 1), at(ring, i + 1)]);
+        }
+        for distance in [1.2f32, 2.0, 4.0] {
+            let settings = Turntable { width: 128, height: 128, frames: 4, distance, ..Turntable::default() };
+            let turned = turntable(&mesh, &settings, &Shading::default(), Look::Flat, &|| ()).unwrap();
+            let angle = (1.0 / settings.eye_distance()).asin();
+            let side = f64::from(angle.tan() / (settings.vertical_fov_rad / 2.0).tan());
+            let share = filled(&turned);
+            assert!((share - side * side).abs() < 0.04, "{distance}: {share} is not {}", side * side);
+        }
+        let empty = isostudy_mesh::TriangleMesh::default();
+        let none = turntable(&empty, &Turntable::default(), &Shading::default(), Look::Flat, &|| ()).unwrap();
+        assert_eq!(filled(&none), 0.0);
+    }
 }

@@ -65,7 +65,7 @@ pub(crate) struct Arguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "How a mesh is shown (a study says it in [turntable] and [shading])")]
 struct OfMesh {
-    /// smooth, flat, smooth-wireframe [default: smooth; flat with --colour]
+    /// smooth, flat, smooth-wireframe, creased [default: smooth; flat with --colour]
     #[arg(long, value_name = "NAME", value_parser = named::<StimulusLook>)]
     look: Option<StimulusLook>,
     /// Colours that stand for numbers, with a scale
@@ -77,6 +77,9 @@ struct OfMesh {
     /// Share of the light that comes from all sides, 0 to 1 [default: 0.25]
     #[arg(long, value_name = "SHARE", value_parser = share)]
     ambient: Option<f32>,
+    /// With --look creased, the degrees by which triangles turn at an edge that is drawn sharp, at least [default: 40]
+    #[arg(long, value_name = "DEGREES", value_parser = crease)]
+    crease_deg: Option<f32>,
     /// With --colour error, the distance at the end of the scale, in spacings [default: 0.1]
     #[arg(long, value_name = "SPACINGS", value_parser = scale)]
     error_scale: Option<f32>,
@@ -107,6 +110,12 @@ fn share(text: &str) -> Result<f32, String> {
     if (0.0..=1.0).contains(&value) { Ok(value) } else { Err("allowed: 0 to 1".into()) }
 }
 
+/// An angle between triangles.
+pub(crate) fn crease(text: &str) -> Result<f32, String> {
+    let value: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=180.0).contains(&value) { Ok(value) } else { Err("allowed: 0 to 180".into()) }
+}
+
 fn scale(text: &str) -> Result<f32, String> {
     let value: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
     if value > 0.0 && value <= 10.0 { Ok(value) } else { Err("allowed: above 0, at most 10".into()) }
@@ -115,12 +124,24 @@ fn scale(text: &str) -> Result<f32, String> {
 impl OfMesh {
     /// The first option that only a mesh takes.
     fn given(&self) -> Option<&'static str> {
-        let Self { look, colour, light_follows, ambient, error_scale, size, frames, object, study: _ } = self;
+        let Self {
+            look,
+            colour,
+            light_follows,
+            ambient,
+            crease_deg,
+            error_scale,
+            size,
+            frames,
+            object,
+            study: _,
+        } = self;
         let options = [
             ("--look", look.is_some()),
             ("--colour", colour.is_some()),
             ("--light-follows", light_follows.is_some()),
             ("--ambient", ambient.is_some()),
+            ("--crease-deg", crease_deg.is_some()),
             ("--error-scale", error_scale.is_some()),
             ("--size", size.is_some()),
             ("--frames", frames.is_some()),
@@ -190,6 +211,9 @@ fn turn(arguments: &Arguments) -> Result<()> {
     if !needs_surface && (own.object.is_some() || own.error_scale.is_some() || arguments.source.is_given()) {
         bail!("an isosurface and --error-scale are for --colour error");
     }
+    if own.crease_deg.is_some() && own.look != Some(StimulusLook::Creased) {
+        bail!("--crease-deg is for --look creased");
+    }
     let mut mesh = mesh_file::read(path)?;
     if mesh.normals.len() != mesh.positions.len() {
         mesh.normals = area_weighted_normals(&mesh.positions, &mesh.triangles);
@@ -204,10 +228,12 @@ fn turn(arguments: &Arguments) -> Result<()> {
         drawn = drawn.with_look(look.into());
     }
     let turntable = framed(&mut mesh, path, own)?;
+    let shading = Shading::default();
     let shading = Shading {
         light_follows: picture::light_follows(own.light_follows.unwrap_or(LightFollows::Camera)),
         ambient: own.ambient.unwrap_or(AMBIENT),
-        ..Shading::default()
+        crease_deg: own.crease_deg.unwrap_or(shading.crease_deg),
+        ..shading
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads as usize).build()?;
     let gif = pool.install(|| -> Result<Vec<u8>> {

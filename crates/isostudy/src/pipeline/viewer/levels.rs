@@ -12,7 +12,7 @@ use anyhow::{Context, Result};
 use isostudy_design::record::{MeshRecord, Purpose};
 use isostudy_design::{Configuration, ConfigurationId};
 use isostudy_extract::{Execution, Extractor};
-use isostudy_mesh::{CompactNumbers, Per, TriangleMesh};
+use isostudy_mesh::{CompactNumbers, Per, TriangleMesh, corner_normals};
 use serde::{Deserialize, Serialize};
 
 /// The multiple of the stimulus spacing at which the meshes of the animations are.
@@ -86,6 +86,7 @@ impl Pipeline<'_> {
         let inputs = self
             .extraction_inputs(configuration, Purpose::Stimulus)?
             .value("spacing", &spacing)
+            .value("crease", &self.study.file.shading.crease_deg)
             .stamp(finished);
         let path = format!("viewer/{id}_{factor}");
         let stamp = self.stage(&format!("viewer/{id}/{factor}"), inputs, |writer| {
@@ -161,12 +162,13 @@ impl Pipeline<'_> {
         let mut angles =
             isostudy_extract::normal_errors_deg(mesh, *field, *isovalue, grid.spacing, &execution)?;
         angles.resize(mesh.positions.len(), None);
+        let corners = corner_normals(mesh, self.study.file.shading.crease_deg as f32);
         let mut bytes = Vec::new();
         let numbers = [
             CompactNumbers { name: "distance", per: Per::Triangle, values: &distances },
             CompactNumbers { name: "normal_error_deg", per: Per::Vertex, values: &angles },
         ];
-        isostudy_mesh::write_compact_glb(mesh, &numbers, &mut bytes)?;
+        isostudy_mesh::write_compact_glb(&corners.with_copies(mesh), &corners.copies, &numbers, &mut bytes)?;
         writer.write(&format!("{path}.glb"), &bytes)
     }
 }

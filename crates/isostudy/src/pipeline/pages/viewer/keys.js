@@ -4,7 +4,7 @@
 export const KEYS = [
   { keys: ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'], names: ['←', '→', '↑', '↓'], says: 'turn both meshes' },
   { keys: ['+', '=', '-'], names: ['+', '-'], says: 'move nearer or away' },
-  { keys: ['1', '2', '3', '4', '5', '6', '7'], names: ['1', 'to', '7'], says: 'smooth, flat, wires, quality, distance, normals, difference' },
+  { keys: ['1', '2', '3', '4', '5', '6', '7', '8'], names: ['1', 'to', '8'], says: 'smooth, creased, flat, wires, quality, distance, normals, difference' },
   { keys: ['[', ']'], names: ['[', ']'], says: 'coarser or finer' },
   { keys: ['r'], names: ['r'], says: 'reset the view' },
   { keys: ['?'], names: ['?'], says: 'show or close this list' },
@@ -35,7 +35,7 @@ export function onKeys(actions) {
     if (arrows[key]) actions.turn(...arrows[key]);
     else if (key === '+' || key === '=') actions.nearer(1);
     else if (key === '-') actions.nearer(-1);
-    else if (/^[1-7]$/.test(key)) actions.mode(Number(key) - 1);
+    else if (/^[1-8]$/.test(key)) actions.mode(Number(key) - 1);
     else if (key === '[') actions.finer(-1);
     else if (key === ']') actions.finer(1);
     else if (key === 'r') actions.reset();

@@ -3,6 +3,7 @@
 /** `values` says where each mode's numbers are from; `good` is the end of the scale that is bright. */
 export const MODES = [
   { id: 'smooth', label: 'Smooth', says: 'shading by the normals of vertices' },
+  { id: 'creased', label: 'Creased', says: 'shading by the normals of vertices, sharp at creases', creased: true },
   { id: 'flat', label: 'Flat', says: 'shading by triangles', flat: true },
   { id: 'wires', label: 'Wires', says: 'smooth shading with the edges of triangles', wires: true },
   { id: 'quality', label: 'Quality', says: 'radius ratio of triangles', flat: true, values: 'quality', good: 'large', most: 1 },

@@ -137,12 +137,12 @@ export class Views {
     at.mesh.visible = Boolean(surface);
     if (!surface || at.surface === surface) return;
     at.surface = surface;
-    const { positions, normals, triangles } = surface;
+    const { positions, normals, triangles, creased } = surface;
     const corners = new BufferGeometry();
-    const spread = (of) => {
+    const spread = (of, indices = triangles) => {
       const each = new Float32Array(3 * triangles.length);
       for (let i = 0; i < triangles.length; i += 1) {
-        const v = 3 * triangles[i];
+        const v = 3 * indices[i];
         each[3 * i] = of[v];
         each[3 * i + 1] = of[v + 1];
         each[3 * i + 2] = of[v + 2];
@@ -150,17 +150,18 @@ export class Views {
       return new BufferAttribute(each, 3);
     };
     corners.setAttribute('position', spread(positions));
-    corners.setAttribute('normal', spread(normals));
+    at.normals = { smooth: spread(normals), creased: spread(normals, creased) };
     corners.setAttribute('value', new BufferAttribute(new Float32Array(triangles.length), 1));
     at.mesh.geometry.dispose();
     at.mesh.geometry = corners;
     corners.computeBoundingSphere();
   }
 
-  /** Colours a pane by numbers of triangles or vertices, on a scale from 0 to `most`; by its material without numbers. */
+  /** Shows a pane in a mode: colours it by numbers of triangles or vertices, on a scale from 0 to `most`; by its material without numbers. */
   colour(side, mode, numbers, most) {
     const { mesh, surface } = this.sides[side];
     const { uniforms } = mesh.material;
+    if (surface) mesh.geometry.setAttribute('normal', this.sides[side].normals[mode.creased ? 'creased' : 'smooth']);
     uniforms.isFlat.value = Boolean(mode.flat);
     uniforms.hasWires.value = Boolean(mode.wires);
     uniforms.isColoured.value = Boolean(numbers);

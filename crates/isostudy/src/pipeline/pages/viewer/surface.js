@@ -36,7 +36,12 @@ async function load(file) {
     const { array } = await gltf.parser.getDependency('accessor', of.accessor);
     lists[of.name] = Float32Array.from(array, (code) => (code === NONE ? NaN : of.most * (code / LARGEST) ** 2));
   }
-  return { file, positions, normals, triangles: index.array, distance: lists.distance, angle: lists.normal_error_deg };
+  // The last vertices are copies with normals of their own: from them corners have creases, from what they are of they are smooth.
+  const { copies } = gltf.parser.json.meshes[0].extras;
+  const of = copies ? (await gltf.parser.getDependency('accessor', copies.accessor)).array : [];
+  const own = vertices - of.length;
+  const triangles = index.array.map((v) => (v < own ? v : of[v - own]));
+  return { file, positions, normals, triangles, creased: index.array, distance: lists.distance, angle: lists.normal_error_deg };
 }
 
 /** Twice the inscribed over the circumscribed radius of each triangle, 0 to 1; 0 of a triangle without area. */
