@@ -13,6 +13,7 @@ pub(crate) mod glance;
 mod mesh_quality;
 pub(crate) mod models;
 mod omnibus;
+mod parts;
 pub(crate) mod power;
 mod prediction;
 pub(crate) mod preferences;

@@ -259,9 +259,9 @@ fn mean(of: impl ExactSizeIterator<Item = f64>) -> f64 {
     of.sum::<f64>() / count
 }
 
-/// Within 2 %; what hardly leaves the surface has no share, and is right to a thousandth of a cell.
+/// Within a share; of what hardly leaves the surface, within that share of a hundredth of a cell.
 fn assert_near(what: &str, found: f64, want: f64, spacing: f64, share: f64) {
-    let near = share * want.max(0.05 * spacing);
+    let near = share * want.max(0.01 * spacing);
     let (found, want, near) = (found / spacing, want / spacing, near / spacing);
     println!("{what}: {found:.5} for {want:.5} cells ({:+.1} %)", 100.0 * (found / want - 1.0));
     assert!((found - want).abs() <= near, "{what}: {found} is not {want} cells");

@@ -235,7 +235,8 @@ fn best_at(results: &Results<'_>, goal: Goal) -> Option<String> {
         false => format!("{text} on the {}", list(on)),
     };
     let parts: Vec<String> = parts.iter().map(part).collect();
-    (!parts.is_empty()).then(|| format!("{}: {}.", capital(wants::words(goal).heading), parts.join("; ")))
+    let heading = wants::heading(results.inputs.study, goal);
+    (!parts.is_empty()).then(|| format!("{}: {}.", capital(&heading), parts.join("; ")))
 }
 
 /// A sentence each, of so many as are named.

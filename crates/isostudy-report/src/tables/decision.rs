@@ -1,9 +1,10 @@
 //! Which method to take for what, and who is beaten in both time and error.
 
-use crate::wants::{busy, judged, words};
+use crate::region;
+use crate::wants::{busy, heading, judged, phrase, words};
 use crate::words::{list, whole};
-use isostudy_design::MethodId;
 use isostudy_design::record::BenchRun;
+use isostudy_design::{MethodId, Study};
 use isostudy_inference::decision::{
     Axes, Cost, Estimate, Front, FrontPoint, Goal, LEAST_ERROR, ObjectCandidates, Pick, Standing, noise,
 };
@@ -16,6 +17,9 @@ use isostudy_timing::stage_times::measured;
 /// Ties of more methods are counted; the next table names them.
 const TIED: usize = 4;
 
+/// What a region has numbers of its own for.
+const JUDGED: &str = "Errors, sharp edges, radius ratios, numbers of triangles and of intersecting pairs";
+
 /// A factor below which two are as good as each other.
 const MORE: f64 = 1.05;
 
@@ -24,7 +28,8 @@ pub(super) fn tables(results: &Results<'_>) -> Vec<Table> {
     let (inputs, found) = (&results.inputs, &results.decision);
     let objects = &found.objects;
     let picks = &judged(results)[..];
-    let tables = [choices(inputs, objects, picks), decision(inputs, objects, picks), standings(found)];
+    let tables =
+        [choices(inputs, objects, picks), decision(inputs, objects, picks), standings(inputs.study, found)];
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
 
@@ -57,7 +62,7 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick
     let mut table = Columns::over(rows)
         .column("object", "On", |of| Cell::text(&of.object.name))
         .columns_of(wants.iter().copied(), |all, want| {
-            all.column(words(want).name, words(want).heading, |of| cell(of, want))
+            all.column(words(want).name, &heading(inputs.study, want), |of| cell(of, want))
         })
         .into_table("choices", "The best method for each object and purpose");
     table.notes.push(
@@ -77,7 +82,7 @@ fn decision(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pic
         if on.len() == objects.len() && on.len() > 1 { "every object".into() } else { list(&on) }
     };
     let mut table = Columns::over(picks)
-        .column("want", "You want", |pick| Cell::text(words(pick.want.goal).phrase))
+        .column("want", "You want", |pick| Cell::text(phrase(inputs.study, pick.want.goal)))
         .column("objects", "On", |pick| Cell::text(on(pick)))
         .column("take", "Take", |pick| Cell::text(format!("{}: {}", pick.method.id, pick.method.label)))
         .column("why", "Why", |pick| Cell::text(why(inputs.bench, pick)))
@@ -89,6 +94,7 @@ fn decision(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pic
              beside the least of those."
                 .into(),
         );
+        table.notes.extend(region::sentence(inputs.study, JUDGED));
     }
     table
 }
@@ -189,8 +195,14 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
     }
     text.push_str(
         "Mean error: mean distance from mesh to isosurface or back, whichever is larger, in edges of the object's benchmark cubes. Sharp \
-         edges kept: mean distance from points of the object's sharp edges to the mesh, in that unit. Where the object ends at walls, their \
-         edges are among them. Each column takes the best in its quantity, whatever else it costs. Those with the \
+         edges kept: mean distance from points of the object's sharp edges to the mesh, in that unit, and nothing where there are none. ",
+    );
+    text.push_str(&match region::sentence(inputs.study, JUDGED) {
+        Some(of) => format!("{of} "),
+        None => "Where the object ends at walls, their edges are among them. ".into(),
+    });
+    text.push_str(
+        "Each column takes the best in its quantity, whatever else it costs. Those with the \
          object's own cubes are compared, but for \u{201c}as many triangles\u{201d}. Two methods are not distinguished if their intervals at 95 % meet. \
          Intervals of fewer than six times reach from the shortest to the longest. Of those not distinguished, and within 5 % of the \
          best, one stands first. For a time it is the one with the smallest mean error, for an error the fastest. ",
@@ -222,7 +234,7 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> String {
 }
 
 /// Every method in every front: both values, and who beats it in both.
-fn standings<'a>(found: &'a Decision<'a>) -> Table {
+fn standings<'a>(study: &Study, found: &'a Decision<'a>) -> Table {
     let rows = found.each().flat_map(|(of, fronts)| {
         let of_front = move |front: &'a Front| front.points.iter().map(move |point| (of, front.axes, point));
         fronts.iter().flat_map(of_front)
@@ -246,11 +258,15 @@ fn standings<'a>(found: &'a Decision<'a>) -> Table {
                 .column(format!("{name}_high"), "to", |row| end(row, |of| of.high))
         })
         .into_table("fronts", "Methods that another method beats in two quantities at once");
-    table.with_note(
+    let table = table.with_note(
         "First: time in seconds, or triangles. Second: mean error in edges of the object's benchmark cubes, or worth in log-odds above the \
          mean of all methods. Intervals are at 95 %. Beaten: another method is better in one and as good in the other, beyond both intervals. \
          Perhaps beaten: by the estimates alone. A time's interval is wider by what runs of one program differ by.",
-    )
+    );
+    match region::sentence(study, "Errors and triangles") {
+        Some(note) => table.with_note(note),
+        None => table,
+    }
 }
 
 /// In words, and who beats it.
