@@ -286,7 +286,8 @@ fn both_ways_are_what_the_analytic_surface_says() {
             let on_mesh: Vec<DVec3> = on_mesh.points(0..40_000).collect();
             let there = mean(on_mesh.iter().map(|&p| solid.distance(&corners, p)));
             assert_near(&format!("{what}: to the surface"), found.distance.mean, there, spacing, 0.02);
-            assert!(found.lost_points < 50, "{what}: {}", found.lost_points);
+            // Beyond the tip of a cone, where dual contouring may go, no gradient leads back.
+            assert!(found.lost_points * 500 < found.distance.count, "{what}: {}", found.lost_points);
         }
     }
 }
