@@ -77,7 +77,7 @@ def recommend():
 
 
 def table(name, folder=TERRAIN / "tables"):
-    """A table of the study, by id; of the quality tables what is said of the benchmark's meshes."""
+    """A table of the study, by id; of the quality tables what is said of the benchmark's meshes, and of their ground, which is last."""
     lines = csv.DictReader((folder / f"{name}.csv").open())
     return {row["id"]: row for row in lines if row.get("purpose", "benchmark") == "benchmark"}
 
@@ -107,13 +107,15 @@ def take(docs):
     """The table of recommendations: which method, why, and its price. `docs` leads to the folder of that name."""
     chunk = lambda method: range_of(ratios("chunks", "chunk_ms", method), 1)
     error = lambda method: [of / cubes for of, cubes in zip(errors(method), errors("mc"))]
-    fewer = [100 * (1 - ratio) for ratio in ratios("benchmark", "triangles", "snapmc")]
+    fewer = [100 * (1 - ratio) for ratio in ratios("quality", "triangles", "snapmc")]
     ratio = lambda method: range_of([float(table("quality", TO)[f"{o}_{method}"]["radius_ratio_mean"]) for o in OBJECTS], 2)
     edge = lambda method: float(table("accuracy", TO)[f"bu_{method}"]["sharp_edges_mean"])
-    pairs = lambda id: int(table("topology", TO)[id]["self_intersections"])
+    topology = table("topology", TO)
+    # Tables of a study without regions have the whole alone.
+    pairs = lambda id: int(topology[id].get("self_intersections_judged") or topology[id]["self_intersections"])
     most = max(pairs(f"{o}_bi-relaxed") for o in OBJECTS)
     mc33 = 100 * (max(ratios("chunks", "chunk_ms", "mc33")) - 1)
-    more = range_of(ratios("benchmark", "triangles", "bi-relaxed"), 1)
+    more = range_of(ratios("quality", "triangles", "bi-relaxed"), 1)
     lines = [
         ("for", "take", "because", "its price"),
         ("---", "---", "---", "---"),

@@ -125,6 +125,21 @@ pub struct ObjectSection {
     pub stimulus_spacing: f64,
     /// The camera for this object.
     pub camera: CameraSection,
+    /// The part of the surface that is judged; the whole of it if there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<RegionSection>,
+}
+
+/// A box in which an object's surface is judged: measures of meshes are given for it alone, beside those of the whole.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RegionSection {
+    /// What it is called in headings and captions: `of the NAME alone`.
+    pub name: String,
+    /// Smallest corner.
+    pub min: [f64; 3],
+    /// Largest corner.
+    pub max: [f64; 3],
 }
 
 /// The camera for one object.

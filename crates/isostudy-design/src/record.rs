@@ -6,10 +6,12 @@ use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 mod pairs;
+mod region;
 mod stage;
 mod validate;
 
 pub use pairs::{AbPair, AbProgram, AbRun, InvalidPair};
+pub use region::{Judged, RegionMeasures};
 pub use stage::Stage;
 pub use validate::{InvalidRun, InvalidSample};
 
@@ -46,6 +48,9 @@ pub struct MeshRecord {
     pub topology: Topology,
     /// How well the mesh stands for its isosurface.
     pub accuracy: Accuracy,
+    /// The same of the object's region alone, which is what decides; `None` where the object has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<RegionMeasures>,
     /// What the trilinear interpolant of the samples has instead, where the samples are the corners of the grid's cells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub trilinear: Option<Trilinear>,

@@ -1,8 +1,11 @@
 //! How near meshes are to the isosurface, and to each other.
 
 mod accuracy;
+mod cells_with_surface;
+mod crossings;
 mod distances;
 mod isosurface;
+mod lines;
 mod normal_errors;
 mod sharp_edges;
 mod triangle_distances;

@@ -105,6 +105,7 @@ fn mesh(study: &Study, row: &BenchmarkRow, purpose: Purpose) -> MeshRecord {
     let vertices = row.vertices + u64::from(purpose == Purpose::Indexed && object.id == "ss");
     MeshRecord {
         schema: MeshRecord::SCHEMA,
+        region: None,
         trilinear: None,
         program: None,
         id: row.id.clone(),

@@ -239,22 +239,8 @@ impl Surface {
             let points = &self.vertices[range.start as usize..range.end as usize];
             Sums::over(points.iter().map(|p| p.as_dvec3()), &nearest)
         });
-        let measured = faces.count as f64;
-        let mean = |sum: f64| if faces.count > 0 { sum / measured } else { 0.0 };
-        let at_vertex =
-            vertices.farthest.is_some_and(|v| faces.farthest.is_none_or(|f| v.1.distance > f.1.distance));
-        let farthest = if at_vertex { vertices.farthest } else { faces.farthest };
-        Ok(Deviation {
-            samples: count,
-            density: count as f64 / self.area,
-            lost_samples: count - faces.count,
-            vertices: self.vertices.len() as u64,
-            lost_vertices: self.vertices.len() as u64 - vertices.count,
-            mean: mean(faces.sum),
-            rms: mean(faces.squares).sqrt(),
-            max: farthest.map_or(0.0, |(_, foot)| foot.distance),
-            farthest: farthest.map(|(from, foot)| Farthest { from, to: foot.position, at_vertex }),
-        })
+        let asked = [count, self.vertices.len() as u64];
+        Ok(Deviation::of([faces, vertices], asked, count as f64 / self.area))
     }
 
     /// How far this surface is from another.
@@ -312,6 +298,42 @@ pub struct Farthest {
     pub to: DVec3,
     /// Whether `from` is a vertex.
     pub at_vertex: bool,
+}
+
+impl Deviation {
+    /// Of sums over samples and over vertices, and of how many were asked for.
+    fn of([faces, vertices]: [Sums; 2], [samples, all_vertices]: [u64; 2], density: f64) -> Self {
+        let mean = |sum: f64| if faces.count > 0 { sum / faces.count as f64 } else { 0.0 };
+        let at_vertex =
+            vertices.farthest.is_some_and(|v| faces.farthest.is_none_or(|f| v.1.distance > f.1.distance));
+        let farthest = if at_vertex { vertices.farthest } else { faces.farthest };
+        Self {
+            samples,
+            density,
+            lost_samples: samples - faces.count,
+            vertices: all_vertices,
+            lost_vertices: all_vertices - vertices.count,
+            mean: mean(faces.sum),
+            rms: mean(faces.squares).sqrt(),
+            max: farthest.map_or(0.0, |(_, foot)| foot.distance),
+            farthest: farthest.map(|(from, foot)| Farthest { from, to: foot.position, at_vertex }),
+        }
+    }
+}
+
+/// How far a surface is from whatever `nearest` gives the distance to, at points of it that each stand for the same area: as
+/// [`Surface::deviation_by`] for a surface that is no mesh. It has no vertices.
+pub fn deviation_at(
+    points: &[DVec3],
+    area_each: f64,
+    nearest: impl Fn(DVec3, Option<(DVec3, f64)>) -> Option<Foot> + Sync,
+) -> Deviation {
+    let count = points.len() as u64;
+    let sums = in_shares(count, |range| {
+        Sums::over(points[range.start as usize..range.end as usize].iter().copied(), &nearest)
+    });
+    let density = if area_each > 0.0 { area_each.recip() } else { 0.0 };
+    Deviation::of([sums, Sums::default()], [count, 0], density)
 }
 
 /// The distances between two surfaces.

@@ -19,7 +19,7 @@ const SAMPLING_SHARE: Measure = Measure {
     ours: Ours::Times(|t| t.sampling_s / t.total_without_normals_s()),
 };
 const TRIANGLES: Measure =
-    Measure { published: |p| p.triangles as f64, ours: Ours::Mesh(|m| m.counts.triangles as f64) };
+    Measure { published: |p| p.triangles as f64, ours: Ours::Mesh(|m| m.judged().triangles as f64) };
 const DISCARD_AS_PUBLISHED: Measure = Measure {
     published: |p| 100.0 * p.discard_fraction,
     ours: Ours::Mesh(|m| 100.0 * discarded_as_published(m)),
@@ -27,14 +27,14 @@ const DISCARD_AS_PUBLISHED: Measure = Measure {
 const DISCARD: Measure = Measure { ours: Ours::Mesh(|m| 100.0 * discarded(m)), ..DISCARD_AS_PUBLISHED };
 const TWO_EDGES: Measure = Measure {
     published: |p| p.aspect_ratio_mean,
-    ours: Ours::Shape(|m| known(&m.quality.published_aspect_ratio, |d| d.mean)),
+    ours: Ours::Shape(|m| known(&m.judged().quality.published_aspect_ratio, |d| d.mean)),
 };
 /// Not published; the published side of this measure is that of two edges.
 const THREE_EDGES: Measure =
-    Measure { ours: Ours::Shape(|m| known(&m.quality.edge_ratio, |d| d.mean)), ..TWO_EDGES };
+    Measure { ours: Ours::Shape(|m| known(&m.judged().quality.edge_ratio, |d| d.mean)), ..TWO_EDGES };
 /// Not published either.
 const RADIUS_RATIO: Measure =
-    Measure { ours: Ours::Shape(|m| known(&m.quality.radius_ratio, |d| d.mean)), ..TWO_EDGES };
+    Measure { ours: Ours::Shape(|m| known(&m.judged().quality.radius_ratio, |d| d.mean)), ..TWO_EDGES };
 const ALL: [Clustering; 3] = [Unclustered, Integrated, EdgeCollapse];
 
 /// Nothing if no benchmark was published.

@@ -12,6 +12,7 @@ mod shapes;
 pub(crate) mod times;
 
 use crate::verdict::{Verdict, prints_alike, relative_difference};
+use isostudy_design::Study;
 use isostudy_design::published::Claim;
 use isostudy_table::{Cell, Columns, Table};
 use numbers::Numbers;
@@ -67,7 +68,7 @@ fn joined<const N: usize>(parts: [&str; N]) -> String {
 }
 
 /// The claims and what they come to, in the order they are listed.
-pub(crate) fn table(source: &str, claims: &[(&Claim, Finding)]) -> Option<Table> {
+pub(crate) fn table(study: &Study, source: &str, claims: &[(&Claim, Finding)]) -> Option<Table> {
     let mut table = Columns::over(claims)
         .column("id", "Id", |(claim, _)| Cell::text(&claim.id))
         .column("statement", "Claim", |(claim, _)| Cell::text(&claim.statement))
@@ -88,6 +89,7 @@ pub(crate) fn table(source: &str, claims: &[(&Claim, Finding)]) -> Option<Table>
          published definition. Ours: by the right definition, where the reason names another."
             .into(),
     );
+    table.notes.extend(isostudy_report::region::sentence(study, "Our triangles and their shapes"));
     // Verdict first, the unit with the claim; ids and what follows from the published tables are in the CSV.
     let mut part = table.block("", &["verdict", "statement", "published", "ours", "reason"]);
     part.caption.clone_from(&table.caption);

@@ -56,7 +56,7 @@ impl<'a> Paper<'a> {
         insert(tables, "preference_objects", lattices);
         tables.extend(positions::table(inputs));
         tables.extend(comparison::tables(source, &self.compared));
-        tables.extend(claims::table(source, &self.claims));
+        tables.extend(claims::table(inputs.study, source, &self.claims));
     }
 
     /// The section of a report that holds the paper against our numbers, with those of `tables` that belong into it.

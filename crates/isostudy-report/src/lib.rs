@@ -15,6 +15,7 @@ mod figure;
 mod figures;
 mod frames;
 mod panel;
+pub mod region;
 pub mod report;
 mod self_test;
 mod standing;

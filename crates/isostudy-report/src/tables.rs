@@ -14,6 +14,7 @@ mod likings;
 mod mesh_quality;
 pub(crate) mod models;
 mod omnibus;
+mod parts;
 pub(crate) mod power;
 mod prediction;
 pub(crate) mod preferences;

@@ -22,7 +22,7 @@ pub fn telling(study: &Study, meshes: &[MeshRecord]) -> Option<Telling> {
         let mut own: Vec<(f64, &ConfigurationId)> = meshes
             .iter()
             .filter(own)
-            .map(|mesh| (mesh.accuracy.distance.mean / object.stimulus_spacing, &mesh.id))
+            .map(|mesh| (mesh.judged().accuracy.distance.mean / object.stimulus_spacing, &mesh.id))
             .filter(|(distance, _)| distance.is_finite())
             .collect();
         // The earlier one of the study's of two that are equal.

@@ -1,5 +1,7 @@
 //! What somebody may want of a mesh, in words.
 
+use crate::region;
+use isostudy_design::Study;
 use isostudy_inference::conclusions::{About, Verdict};
 use isostudy_inference::decision::{Goal, Pick};
 use isostudy_inference::inputs::Inputs;
@@ -106,4 +108,23 @@ pub(crate) fn words(goal: Goal) -> Words {
         ],
     };
     Words { name, heading, unit, phrase, says }
+}
+
+/// The heading of its column: where objects have regions, it says which part is judged.
+pub(crate) fn heading(study: &Study, goal: Goal) -> String {
+    with_part(words(goal).heading, study, goal)
+}
+
+/// The phrase after *You want*, likewise.
+pub(crate) fn phrase(study: &Study, goal: Goal) -> String {
+    with_part(words(goal).phrase, study, goal)
+}
+
+fn with_part(text: &str, study: &Study, goal: Goal) -> String {
+    let is_of_part =
+        matches!(goal, Goal::Closest | Goal::ClosestPerTriangle | Goal::SharpEdges | Goal::Regular);
+    match region::alone(study).filter(|_| is_of_part) {
+        Some(alone) => format!("{text}, {alone}"),
+        None => text.into(),
+    }
 }

@@ -29,6 +29,7 @@ mod place;
 mod prepare;
 mod recipe;
 mod records;
+mod region;
 mod run_file;
 mod seeds;
 mod source;

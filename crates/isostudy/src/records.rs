@@ -3,7 +3,8 @@
 
 use isostudy_design::ConfigurationId;
 use isostudy_design::record::{
-    Accuracy, Counts, Distribution, Histogram, MeshRecord, Purpose, Quality, TetrahedraCounts, Topology,
+    Accuracy, Counts, Distribution, Histogram, MeshRecord, Purpose, Quality, RegionMeasures,
+    TetrahedraCounts, Topology,
 };
 use isostudy_field::Counted;
 use isostudy_mesh::TriangleMesh;
@@ -22,7 +23,7 @@ pub(crate) fn mesh_record(
     cells: [u32; 3],
     counts: Counts,
     mesh: &TriangleMesh,
-    accuracy: &isostudy_extract::Accuracy,
+    (accuracy, region): (&isostudy_extract::Accuracy, Option<RegionMeasures>),
 ) -> MeshRecord {
     MeshRecord {
         schema: MeshRecord::SCHEMA,
@@ -34,6 +35,7 @@ pub(crate) fn mesh_record(
         quality: quality(&isostudy_mesh::quality::quality(mesh)),
         topology: topology(&isostudy_mesh::topology::topology(mesh), mesh),
         accuracy: self::accuracy(accuracy),
+        region,
         trilinear: None,
         program: None,
     }

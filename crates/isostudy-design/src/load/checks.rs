@@ -2,7 +2,7 @@
 
 use super::configuration;
 use crate::check::{Checker, ConfigError, short};
-use crate::config::{FieldSection, ObjectSection, StudyFile, SweepSection};
+use crate::config::{FieldSection, ObjectSection, RegionSection, StudyFile, SweepSection};
 use crate::contrast::contrasts;
 use crate::method::is_summed;
 use crate::study::{Configuration, Study};
@@ -154,7 +154,38 @@ pub(super) fn check_objects(c: &Checker<'_>, objects: &[ObjectSection]) -> Resul
         c.positive(&key("camera.distance"), object.camera.distance, 1e6)?;
         c.number(&key("camera.middle_z"), object.camera.middle_z, -1e6, 1e6)?;
         c.number(&key("camera.vertical_fov_rad"), object.camera.vertical_fov_rad, 0.01, 3.1)?;
+        if let Some(region) = &object.region {
+            check_region(c, &key("region"), object, region)?;
+        }
         check_field(c, &key("field"), &object.field)?;
+    }
+    Ok(())
+}
+
+/// A region is a box that meets the object's volume.
+fn check_region(
+    c: &Checker<'_>,
+    key: &str,
+    object: &ObjectSection,
+    region: &RegionSection,
+) -> Result<(), ConfigError> {
+    if region.name.trim().is_empty() {
+        return c.refuse(format!("{key}.name"), &region.name, "must be a name");
+    }
+    c.numbers(&format!("{key}.min"), &region.min, -1e6, 1e6)?;
+    c.numbers(&format!("{key}.max"), &region.max, -1e6, 1e6)?;
+    for axis in 0..3 {
+        let (min, max) = (region.min[axis], region.max[axis]);
+        if max as f32 <= min as f32 {
+            let limit = format!("must be above {key}.min = {}", short(min));
+            return c.refuse(format!("{key}.max[{axis}]"), short(max), limit);
+        }
+        let volume = [object.min[axis], object.max[axis]];
+        if max <= volume[0] || min >= volume[1] {
+            let limit =
+                format!("must meet the object's volume, {} to {}", short(volume[0]), short(volume[1]));
+            return c.refuse(format!("{key}.max[{axis}]"), short(max), limit);
+        }
     }
     Ok(())
 }

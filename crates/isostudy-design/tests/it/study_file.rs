@@ -444,6 +444,7 @@ fn object(field: FieldSection) -> ObjectSection {
         benchmark_spacing: 1.0,
         stimulus_spacing: 1.0,
         camera: CameraSection { distance: 1.0, vertical_fov_rad: 1.0, middle_z: 1.0 },
+        region: Some(RegionSection { name: String::new(), min: [0.0; 3], max: [0.0; 3] }),
     }
 }
 

@@ -2,13 +2,14 @@
 
 use glam::{DVec3, Vec3};
 use isostudy_mesh::Bounds;
-use isostudy_mesh::metro::Foot;
+use isostudy_mesh::metro::{AreaSamples, Foot};
 
 use crate::execution::threads::mapped;
 use crate::extraction::ExtractError;
 use crate::extractor::extract;
 use crate::lattice::Arrangement;
 use crate::lattice::BoxGrid;
+use crate::measure::crossings::{Crossings, crossings};
 use crate::measure::sharp_edges;
 use crate::sampling::level::Level;
 use crate::settings::{Clustering, Execution, ExtractSettings};
@@ -27,6 +28,7 @@ pub(crate) struct Isosurface<'a> {
     field: &'a dyn StudyField,
     /// The field as it is sampled.
     level: Level<'a>,
+    /// Where points are wanted.
     bounds: Bounds,
     pub(crate) triangles: Vec<[Vec3; 3]>,
     /// Where sharp edges are looked for, if the triangles are not the isosurface itself.
@@ -36,20 +38,22 @@ pub(crate) struct Isosurface<'a> {
 
 impl<'a> Isosurface<'a> {
     /// The field's own triangles, or else those of an extraction on a body-centred lattice with three quarters of the
-    /// spacing. `level` is the field's.
+    /// spacing. `level` is the field's; points are wanted `within` a part of the grid's box.
     pub(crate) fn new(
         field: &'a dyn StudyField,
         level: Level<'a>,
         grid: &BoxGrid,
+        within: &Bounds,
         execution: &Execution,
     ) -> Result<Self, ExtractError> {
-        let (bounds, isovalue) = (grid.bounds, level.isovalue);
+        let (bounds, isovalue) = (*within, level.isovalue);
         if let Some(triangles) = field.isosurface_triangles(isovalue) {
             let (triangles, suspects) = (triangles.to_vec(), Vec::new());
             return Ok(Self { field, level, bounds, triangles, suspects, is_exact: true });
         }
         // Where there are too many points for the finer lattice, that of the grid has to do.
-        let finer = BoxGrid { bounds, spacing: FINER * grid.spacing }.lattice(Arrangement::BodyCentred);
+        let finer =
+            BoxGrid { bounds: grid.bounds, spacing: FINER * grid.spacing }.lattice(Arrangement::BodyCentred);
         let finer = finer.or_else(|_| grid.lattice(Arrangement::SimpleCubic))?;
         let clustering = Clustering::Integrated;
         let settings = ExtractSettings { isovalue, clustering, ..ExtractSettings::default() };
@@ -64,10 +68,34 @@ impl<'a> Isosurface<'a> {
         foot(self.field, &self.level, p)
     }
 
+    /// Points of the isosurface within the box, each for the same share of its area: of triangles that are the isosurface, else
+    /// where lines cross it. `wanted` gets the area.
+    ///
+    /// Not where an extraction is: it rounds edges, and a third of what a mesh leaves out is near them.
+    pub(crate) fn points(&self, wanted: impl Fn(f64) -> f64, seed: u64) -> Crossings {
+        if !self.is_exact {
+            return crossings(&self.level, &self.bounds, wanted);
+        }
+        let area = AreaSamples::new(&self.triangles, 1, seed).area();
+        let samples = AreaSamples::new(&self.triangles, wanted(area).ceil() as u64, seed);
+        let points: Vec<DVec3> = samples.points(0..samples.count()).filter(|p| self.has_in_box(p)).collect();
+        Crossings { points, area_each: area / samples.count().max(1) as f64 }
+    }
+
+    /// Whether the triangles are the isosurface itself.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.is_exact
+    }
+
+    /// `p`, if it is in the box.
+    pub(crate) fn in_box(&self, p: DVec3) -> Option<DVec3> {
+        self.has_in_box(&p).then_some(p)
+    }
+
     /// The point of the isosurface that a point of the triangles stands for; `None` if it is outside the box.
     pub(crate) fn point(&self, p: DVec3) -> Option<DVec3> {
         let on_surface = if self.is_exact { p } else { self.foot(p)?.position };
-        self.has_in_box(&on_surface).then_some(on_surface)
+        self.in_box(on_surface)
     }
 
     /// Points of the sharp edges within the box: of triangles that are the isosurface, half a spacing of their length apart; else
@@ -77,8 +105,15 @@ impl<'a> Isosurface<'a> {
         let mut points = if self.is_exact {
             sharp_edges::of_triangles(&self.triangles, &self.bounds, 0.5 * f64::from(level.spacing))
         } else {
-            let every = self.suspects.len().div_ceil(MOST_SUSPECTS).max(1);
-            let suspects: Vec<[Vec3; 2]> = self.suspects.iter().copied().step_by(every).collect();
+            // What begins outside may still end within.
+            let near = |[a, b]: &&[Vec3; 2]| {
+                let slack = level.spacing;
+                a.max(*b).cmpge(self.bounds.min - slack).all()
+                    && a.min(*b).cmple(self.bounds.max + slack).all()
+            };
+            let suspects: Vec<[Vec3; 2]> = self.suspects.iter().filter(near).copied().collect();
+            let every = suspects.len().div_ceil(MOST_SUSPECTS).max(1);
+            let suspects: Vec<[Vec3; 2]> = suspects.into_iter().step_by(every).collect();
             let found = mapped(&suspects, |&ends| sharp_edges::between(level, ends, reach));
             found.into_iter().flatten().collect()
         };

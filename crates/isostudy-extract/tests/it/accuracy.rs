@@ -85,7 +85,7 @@ fn a_plane_is_as_far_as_it_was_moved_and_as_askew_as_it_was_tilted() {
         for (height, degrees) in [(0.02, 0.0), (-0.05, 10.0), (0.25, 120.0)] {
             let found = measure(&square(normal, height, degrees), &field, 0.0, 0.1);
             let want = f64::from(height.abs());
-            assert_eq!((found.distance.count, found.lost_points, found.lost_vertices), (8_192, 0, 0));
+            assert_eq!((found.distance.count, found.lost_points, found.lost_vertices), (65_536, 0, 0));
             for distance in [found.distance.min, found.distance.mean, found.distance.max] {
                 assert!((distance - want).abs() < 3e-6, "{distance} is not {want}");
             }
@@ -164,7 +164,8 @@ fn the_way_back_is_that_from_the_isosurface() {
     // The plane z = 0.04 fills the box as the square at 0.1 does.
     let field = HalfSpace { normal: Vec3::Z, steepness: 0.5 };
     let found = measure(&square(Vec3::Z, 0.1, 0.0), &field, -0.02, 0.08);
-    assert_eq!(found.distance_to_mesh.count, 8_192);
+    // Lines are sent for so many, and cross as often as they do.
+    assert!((found.distance_to_mesh.count as f64 / 131_072.0 - 1.0).abs() < 0.05);
     for distance in [found.distance_to_mesh.min, found.distance_to_mesh.max, found.hausdorff()] {
         assert!((distance - 0.06).abs() < 1e-6, "{distance}");
     }
@@ -224,7 +225,7 @@ fn a_field_that_knows_its_surface_gives_what_a_search_gives_and_more() {
     // Beyond three spacings: Negated stands for fields that pass on what another knows.
     let small = sphere_mesh(4).transformed(|p| p * 0.4);
     let far = measure(&small, &isostudy_field::Negated(known), 0.0, 0.1);
-    assert_eq!((far.lost_points, measure(&small, &searched, 0.0, 0.1).lost_points), (0, 8_192));
+    assert_eq!((far.lost_points, measure(&small, &searched, 0.0, 0.1).lost_points), (0, 65_536));
     assert!((far.distance.min - 0.4).abs() < 1e-3 && (far.distance.max - 0.4).abs() < 1e-3);
 }
 
@@ -241,8 +242,9 @@ fn a_mesh_as_field_is_measured_both_ways_as_two_meshes_are() {
     let found = accuracy(&mesh, &field, 0.0, &BoxGrid::from(&lattice), &THREADS).unwrap();
     let sampling = Sampling { amount: Amount::Samples(200_000), seed: 5 };
     let want = metro(&mesh, &source, &sampling).unwrap();
-    for (found, want) in [(found.distance, want.forward), (found.distance_to_mesh, want.backward)] {
-        assert_eq!(found.count, 8_192);
+    let ways = [(65_536, found.distance, want.forward), (131_072, found.distance_to_mesh, want.backward)];
+    for (count, found, want) in ways {
+        assert_eq!(found.count, count);
         assert!((found.mean / want.mean - 1.0).abs() < 0.02, "{} is not {}", found.mean, want.mean);
         assert!((found.rms() / want.rms - 1.0).abs() < 0.02, "{} is not {}", found.rms(), want.rms);
         assert!(found.max <= want.max + 1e-6, "{} is above {}", found.max, want.max);
@@ -289,7 +291,7 @@ fn what_cannot_be_measured_is_counted() {
     let far = square(Vec3::Z, 0.5, 0.0);
     let field = HalfSpace { normal: Vec3::Z, steepness: 1.0 };
     let found = measure(&far, &field, 0.0, 0.1);
-    assert_eq!((found.distance.count, found.lost_points), (0, 8_192), "beyond three spacings");
+    assert_eq!((found.distance.count, found.lost_points), (0, 65_536), "beyond three spacings");
     assert_eq!((found.normal_error_deg.count, found.lost_vertices), (0, 4));
     struct Nowhere;
     impl StudyField for Nowhere {
@@ -297,7 +299,7 @@ fn what_cannot_be_measured_is_counted() {
             f32::NAN
         }
     }
-    assert_eq!(measure(&far, &Nowhere, 0.0, 0.1).lost_points, 8_192);
+    assert_eq!(measure(&far, &Nowhere, 0.0, 0.1).lost_points, 65_536);
     let mut flat = square(Vec3::Z, 0.01, 0.0);
     flat.normals[1] = Vec3::ZERO;
     assert_eq!(measure(&flat, &field, 0.0, 0.1).lost_vertices, 1, "no normal");

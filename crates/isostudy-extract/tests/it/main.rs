@@ -41,6 +41,7 @@ mod terrain;
 mod ties;
 mod topology;
 mod triangle_distances;
+mod true_distances;
 mod two_levels;
 mod volume_field;
 mod warp;

@@ -115,9 +115,9 @@ impl Candidate<'_> {
         self.method.id
     }
 
-    /// The number of triangles.
+    /// The number of triangles, of the object's region if it has one, as all that is judged here but times and topology.
     pub fn triangles(&self) -> Estimate {
-        Estimate::exact(self.mesh.counts.triangles as f64)
+        Estimate::exact(self.mesh.judged().triangles as f64)
     }
 
     /// Whether the mesh has the components and the Euler characteristic of the trilinear interpolant of its samples, as far as that was
@@ -135,7 +135,7 @@ impl Candidate<'_> {
     pub fn is_faultless(&self) -> bool {
         let t = &self.mesh.topology;
         let counts = [t.non_manifold_edges, t.non_manifold_vertices, t.folded_faces, t.duplicate_faces];
-        counts == [0; 4] && t.self_intersections == Some(0)
+        counts == [0; 4] && self.mesh.judged().self_intersections == Some(0)
     }
 }
 
@@ -166,7 +166,13 @@ pub fn candidates<'a>(inputs: &Inputs<'a>, likings: &[Liking]) -> Vec<ObjectCand
                     .bench
                     .and_then(|run| run.memory.iter().find(|peak| peak.id == id)?.of_extraction()),
                 error: error(mesh, unit),
-                sharp_edges: mesh.accuracy.sharp_edges.as_ref().and_then(mean).map(|mean| mean.per(unit)),
+                sharp_edges: mesh
+                    .judged()
+                    .accuracy
+                    .sharp_edges
+                    .as_ref()
+                    .and_then(mean)
+                    .map(|mean| mean.per(unit)),
                 preference: liking
                     .and_then(|of| of.worth(method.id))
                     .map(|(worth, interval)| Estimate::within(worth, interval)),
@@ -224,8 +230,9 @@ fn per_chunk(chunks: u64, times_s: &[f64]) -> Vec<f64> {
 }
 
 fn error(mesh: &MeshRecord, unit: f64) -> Option<Estimate> {
-    let there = mean(&mesh.accuracy.distance)?;
-    let back = mean(mesh.accuracy.distance_to_mesh.as_ref()?)?;
+    let of = mesh.judged().accuracy;
+    let there = mean(&of.distance)?;
+    let back = mean(of.distance_to_mesh.as_ref()?)?;
     let larger = if back.value > there.value { back } else { there };
     Some(larger.per(unit).at_least(LEAST_ERROR))
 }

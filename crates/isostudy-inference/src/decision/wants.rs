@@ -138,7 +138,7 @@ const WANTS: [Want; 13] = [
     Want { goal: Goal::SharpEdges, quantity: |of| of.sharp_edges, between: |of| of.time_s, ..Want::PLAIN },
     Want {
         goal: Goal::Regular,
-        quantity: |of| known(&of.mesh.quality.radius_ratio, |ratio| ratio.mean).map(Estimate::exact),
+        quantity: |of| known(&of.mesh.judged().quality.radius_ratio, |ratio| ratio.mean).map(Estimate::exact),
         is_larger_better: true,
         ..Want::PLAIN
     },
@@ -279,7 +279,7 @@ impl Cost {
             samples: over_least(|of| of.mesh.counts.evaluations.map(|calls| calls as f64)),
             memory: over_least(|of| of.memory.map(|bytes| bytes as f64)),
             error: over_least(|of| of.error.map(|error| error.value)),
-            crossing_triangles: topology.self_intersections.unwrap_or(0),
+            crossing_triangles: taken.mesh.judged().self_intersections.unwrap_or(0),
             no_manifold: topology.non_manifold_edges + topology.non_manifold_vertices,
         }
     }

@@ -28,7 +28,7 @@ pub struct Metric {
     pub value: fn(&MeshRecord) -> Option<f64>,
 }
 
-/// Every metric. Means over triangles, vertices or area, as their records say.
+/// Every metric, of the object's region if it has one. Means over triangles, vertices or area, as their records say.
 pub const METRICS: &[Metric] = &[
     Metric {
         code: "radius_ratio",
@@ -36,7 +36,7 @@ pub const METRICS: &[Metric] = &[
         better: "higher",
         larger_is_better: true,
         scale: Scale::Difference,
-        value: |m| known(&m.quality.radius_ratio, |d| d.mean),
+        value: |m| known(&m.judged().quality.radius_ratio, |d| d.mean),
     },
     Metric {
         code: "min_angle",
@@ -44,7 +44,7 @@ pub const METRICS: &[Metric] = &[
         better: "higher",
         larger_is_better: true,
         scale: Scale::Difference,
-        value: |m| known(&m.quality.min_angle_deg, |d| d.mean),
+        value: |m| known(&m.judged().quality.min_angle_deg, |d| d.mean),
     },
     Metric {
         code: "published_aspect_ratio",
@@ -52,7 +52,7 @@ pub const METRICS: &[Metric] = &[
         better: "lower",
         larger_is_better: false,
         scale: Scale::LogRatio,
-        value: |m| known(&m.quality.published_aspect_ratio, |d| d.mean),
+        value: |m| known(&m.judged().quality.published_aspect_ratio, |d| d.mean),
     },
     Metric {
         code: "triangles",
@@ -60,7 +60,7 @@ pub const METRICS: &[Metric] = &[
         better: "fewer",
         larger_is_better: false,
         scale: Scale::LogRatio,
-        value: |m| Some(m.counts.triangles as f64),
+        value: |m| Some(m.judged().triangles as f64),
     },
     Metric {
         code: "normal_error",
@@ -68,7 +68,7 @@ pub const METRICS: &[Metric] = &[
         better: "lower",
         larger_is_better: false,
         scale: Scale::LogRatio,
-        value: |m| known(&m.accuracy.normal_error_deg, |d| d.mean),
+        value: |m| known(&m.judged().accuracy.normal_error_deg, |d| d.mean),
     },
     Metric {
         code: "distance",
@@ -76,7 +76,7 @@ pub const METRICS: &[Metric] = &[
         better: "lower",
         larger_is_better: false,
         scale: Scale::LogRatio,
-        value: |m| known(&m.accuracy.distance, |d| d.mean),
+        value: |m| known(&m.judged().accuracy.distance, |d| d.mean),
     },
 ];
 

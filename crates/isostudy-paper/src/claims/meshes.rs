@@ -10,7 +10,7 @@ use isostudy_inference::mesh_set::{self, discarded_as_published, of_tetrahedra};
 use Clustering::{EdgeCollapse, Integrated};
 
 const TRIANGLES: Measure =
-    Measure { published: |p| p.triangles as f64, ours: Ours::Mesh(|m| m.counts.triangles as f64) };
+    Measure { published: |p| p.triangles as f64, ours: Ours::Mesh(|m| m.judged().triangles as f64) };
 const SAMPLES: Measure = Measure {
     published: |p| p.stored_samples as f64,
     ours: Ours::Mesh(|m| of_tetrahedra(m, |t| t.stored_samples)),

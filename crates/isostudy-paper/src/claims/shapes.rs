@@ -9,24 +9,33 @@ use isostudy_design::published::Claim;
 use isostudy_inference::mesh_set::known;
 use isostudy_inference::published_ratio;
 
-const RATIO_MEAN: Measure =
-    Measure { published: |p| p.aspect_ratio_mean, ours: Ours::Shape(|m| published_ratio::mean(&m.quality)) };
-const RATIO_SD: Measure =
-    Measure { published: |p| p.aspect_ratio_sd, ours: Ours::Shape(|m| published_ratio::sd(&m.quality)) };
+const RATIO_MEAN: Measure = Measure {
+    published: |p| p.aspect_ratio_mean,
+    ours: Ours::Shape(|m| published_ratio::mean(m.judged().quality)),
+};
+const RATIO_SD: Measure = Measure {
+    published: |p| p.aspect_ratio_sd,
+    ours: Ours::Shape(|m| published_ratio::sd(m.judged().quality)),
+};
 /// The same, with degenerate triangles left out.
-const RATIO_MEAN_WITHOUT: Measure =
-    Measure { ours: Ours::Shape(|m| known(&m.quality.published_aspect_ratio, |d| d.mean)), ..RATIO_MEAN };
-const RATIO_SD_WITHOUT: Measure =
-    Measure { ours: Ours::Shape(|m| known(&m.quality.published_aspect_ratio, |d| d.sd)), ..RATIO_SD };
+const RATIO_MEAN_WITHOUT: Measure = Measure {
+    ours: Ours::Shape(|m| known(&m.judged().quality.published_aspect_ratio, |d| d.mean)),
+    ..RATIO_MEAN
+};
+const RATIO_SD_WITHOUT: Measure = Measure {
+    ours: Ours::Shape(|m| known(&m.judged().quality.published_aspect_ratio, |d| d.sd)),
+    ..RATIO_SD
+};
 /// The published side has no order-free ratio; its own stands in and is not shown as ours.
 const EDGE_RATIO_MEAN: Measure = Measure {
     published: |p| p.aspect_ratio_mean,
-    ours: Ours::Shape(|m| known(&m.quality.edge_ratio, |d| d.mean)),
+    ours: Ours::Shape(|m| known(&m.judged().quality.edge_ratio, |d| d.mean)),
 };
 /// Not published.
-const DEGENERATE: Measure = Measure { published: |_| 0.0, ours: Ours::Mesh(|m| m.quality.degenerate as f64) };
+const DEGENERATE: Measure =
+    Measure { published: |_| 0.0, ours: Ours::Mesh(|m| m.judged().quality.degenerate as f64) };
 const TRIANGLES: Measure =
-    Measure { published: |p| p.triangles as f64, ours: Ours::Mesh(|m| m.counts.triangles as f64) };
+    Measure { published: |p| p.triangles as f64, ours: Ours::Mesh(|m| m.judged().triangles as f64) };
 
 pub(super) fn find(numbers: &Numbers<'_>, claim: &Claim) -> Option<Finding> {
     match claim.id.as_str() {

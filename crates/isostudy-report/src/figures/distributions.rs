@@ -7,6 +7,7 @@ use super::draft::{Unfinished, canvas_with_legend};
 use super::sheet::Sheet;
 use super::style;
 use super::style::Fill;
+use crate::region;
 use isostudy_design::record::{Distribution, MeshRecord, Purpose};
 use isostudy_design::{MethodId, Study};
 use isostudy_inference::inputs::Inputs;
@@ -19,8 +20,8 @@ const FLAT: f64 = 5.0;
 type Measure = (&'static str, fn(&MeshRecord) -> &Distribution);
 
 const MEASURES: [Measure; 2] = [
-    ("longest / shortest edge", |m| &m.quality.edge_ratio),
-    ("published ratio", |m| &m.quality.published_aspect_ratio),
+    ("longest / shortest edge", |m| &m.judged().quality.edge_ratio),
+    ("published ratio", |m| &m.judged().quality.published_aspect_ratio),
 ];
 
 pub(super) fn aspect_ratios(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinished> {
@@ -54,8 +55,8 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinis
     }
     let caption = "Aspect ratios of the triangles, at the benchmark spacing. Box: quartiles and median; whiskers: 5 % and 95 %; \
                    logarithmic scale. Above: longest over shortest of all three edges; below: the published ratio of \
-                   the two edges at the first corner. Degenerate triangles are left out."
-        .into();
+                   the two edges at the first corner. Degenerate triangles are left out.";
+    let caption = region::said(caption, inputs.study, "The triangles");
     Some(Unfinished { name: "aspect_ratio_distributions", caption, canvas })
 }
 

@@ -9,6 +9,7 @@ use super::marks::Mark;
 use super::scatter::Scatter;
 use super::sheet::Sheet;
 use super::style;
+use crate::region;
 use isostudy_design::{Method, MethodId, Study};
 use isostudy_inference::decision::{Axes, Front, FrontPoint, LEAST_ERROR, ObjectCandidates, Standing};
 use isostudy_inference::results::Decision;
@@ -48,6 +49,7 @@ pub(super) fn draft(study: &Study, decision: &Decision<'_>, sheet: Sheet) -> Opt
     if decision.objects.iter().any(ObjectCandidates::has_least_error) {
         caption.push_str(&format!(" A mean error below {LEAST_ERROR} is drawn there."));
     }
+    let caption = region::said(caption, study, "Errors and triangles");
     Some(Unfinished { name: "fronts", caption, canvas })
 }
 
@@ -78,6 +80,7 @@ pub(super) fn overview(
          method beats in both quantities. Thin lines are intervals at 95 %.",
         of.object.name
     );
+    caption = region::said(caption, study, "Errors and triangles");
     if decision.each().filter(|(_, fronts)| !fronts.is_empty()).count() > 1 {
         caption.push_str(" The figure of fronts has every object.");
     }

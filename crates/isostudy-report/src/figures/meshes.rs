@@ -6,6 +6,7 @@ use super::draft::Unfinished;
 use super::legend::Swatch;
 use super::sheet::Sheet;
 use super::style;
+use crate::region;
 use isostudy_design::ConfigurationId;
 use isostudy_design::published::BenchmarkRow;
 use isostudy_design::record::{BenchRun, BenchSample, MeshRecord, Purpose};
@@ -79,10 +80,11 @@ fn has_published(clusters: &[Cluster]) -> bool {
 }
 
 pub(super) fn triangles(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinished> {
-    let clusters = mesh_clusters(inputs, |m| Some(m.counts.triangles as f64), |p| p.triangles as f64)?;
+    let clusters = mesh_clusters(inputs, |m| Some(m.judged().triangles as f64), |p| p.triangles as f64)?;
     let published = has_published(&clusters);
     let panel = BarPanel::from_zero("triangles", clusters);
-    let caption = "Triangles of each configuration at the benchmark spacing.".into();
+    let caption = "Triangles of each configuration at the benchmark spacing.";
+    let caption = region::said(caption, inputs.study, "They");
     Some(draft(sheet, "triangles", caption, panel, &published_legend(published)))
 }
 
@@ -154,25 +156,25 @@ pub(super) fn radius_ratios(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinis
         return None;
     }
     let clusters = clusters(inputs, |id, _| {
-        let mean = meshes.get(id).and_then(|m| known(&m.quality.radius_ratio, |d| d.mean));
+        let mean = meshes.get(id).and_then(|m| known(&m.judged().quality.radius_ratio, |d| d.mean));
         vec![Bar::of(mean, style::method(inputs.study, id.method), None)]
     });
     let panel = BarPanel::of("mean radius ratio", Axis::up_to(1.0), clusters);
     let caption = "Mean radius ratio of the triangles at the benchmark spacing: 1 is equilateral, 0 is flat. A few flat \
-                   triangles change it little, unlike the mean aspect ratio."
-        .into();
+                   triangles change it little, unlike the mean aspect ratio.";
+    let caption = region::said(caption, inputs.study, "The triangles");
     Some(draft(sheet, "radius_ratio", caption, panel, &[]))
 }
 
 pub(super) fn aspect_ratios(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinished> {
     let clusters = mesh_clusters(
         inputs,
-        |m| known(&m.quality.published_aspect_ratio, |d| d.mean),
+        |m| known(&m.judged().quality.published_aspect_ratio, |d| d.mean),
         |p| p.aspect_ratio_mean,
     )?;
     let published = has_published(&clusters);
     let degenerate: u64 =
-        MeshSet::of(inputs, Purpose::Benchmark).in_order().map(|(_, m)| m.quality.degenerate).sum();
+        MeshSet::of(inputs, Purpose::Benchmark).in_order().map(|(_, m)| m.judged().quality.degenerate).sum();
     let beyond: Vec<String> = inputs
         .study
         .published
@@ -184,6 +186,7 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinis
     let mut caption = String::from(
         "Mean aspect ratio as published: longer over shorter of the two edges at a triangle's first corner.",
     );
+    caption = region::said(caption, inputs.study, "The triangles");
     if largest(&clusters) > CUT {
         caption.push_str(" The axis is cut at 10; bars that run out of it carry their value.");
     }

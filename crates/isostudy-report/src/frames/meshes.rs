@@ -3,7 +3,9 @@
 use super::LongFrame;
 use super::rows::Rows;
 use crate::distribution::{STATISTICS, purpose_name};
-use isostudy_design::record::{Counts, Distribution, MeshRecord, TetrahedraCounts, Topology};
+use isostudy_design::record::{
+    Accuracy, Counts, Distribution, MeshRecord, Quality, TetrahedraCounts, Topology,
+};
 use isostudy_design::{Level, Study};
 use isostudy_inference::mesh_set::known;
 
@@ -32,10 +34,13 @@ pub(crate) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
     COUNTS.iter().for_each(|(name, of)| rows.count(name, |mesh| of(&mesh.counts)));
     TETRAHEDRA.iter().for_each(|(name, of)| rows.count(name, |mesh| mesh.counts.of_tetrahedra(*of)));
     rows.count("degenerate_triangles", |mesh| Some(mesh.quality.degenerate));
-    for (name, of) in DISTRIBUTIONS {
-        rows.count(&format!("{name}_count"), |mesh| of(mesh).map(|d| d.count));
+    for (name, counted) in DISTRIBUTIONS {
+        let of = |mesh: &MeshRecord, value: fn(&Distribution) -> f64| {
+            counted(&mesh.quality, &mesh.accuracy).and_then(|d| known(d, value))
+        };
+        rows.count(&format!("{name}_count"), |mesh| counted(&mesh.quality, &mesh.accuracy).map(|d| d.count));
         for (statistic, _, value) in STATISTICS {
-            rows.number(&format!("{name}_{statistic}"), |mesh| of(mesh).and_then(|d| known(d, *value)));
+            rows.number(&format!("{name}_{statistic}"), |mesh| of(mesh, *value));
         }
     }
     rows.number("hausdorff", |mesh| mesh.accuracy.hausdorff());
@@ -44,7 +49,35 @@ pub(crate) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
     TOPOLOGY.iter().for_each(|(name, of)| rows.count(name, |mesh| Some(of(&mesh.topology))));
     rows.whole("euler_characteristic", |mesh| Some(mesh.topology.euler_characteristic));
     rows.count("self_intersections", |mesh| mesh.topology.self_intersections);
+    if records.iter().any(|mesh| mesh.region.is_some()) {
+        in_regions(&mut rows);
+    }
     LongFrame { name: "meshes", frame: rows.frame(), texts: Vec::new() }
+}
+
+/// The same of objects' regions; missing where an object has none.
+fn in_regions(rows: &mut Rows<&MeshRecord>) {
+    rows.text("region", |mesh| Some(mesh.region.as_ref()?.name.clone()));
+    rows.count("region_triangles", |mesh| Some(mesh.region.as_ref()?.triangles));
+    rows.number("region_area_share", |mesh| Some(mesh.region.as_ref()?.area_share));
+    rows.count("region_degenerate_triangles", |mesh| Some(mesh.region.as_ref()?.quality.degenerate));
+    for (name, described) in DISTRIBUTIONS {
+        let of = |mesh: &MeshRecord, value: fn(&Distribution) -> f64| {
+            let part = mesh.region.as_ref()?;
+            described(&part.quality, &part.accuracy).map(value)
+        };
+        rows.count(&format!("region_{name}_count"), |mesh| of(mesh, |d| d.count as f64).map(|n| n as u64));
+        for (statistic, _, value) in STATISTICS {
+            let value = *value;
+            rows.number(&format!("region_{name}_{statistic}"), |mesh| {
+                of(mesh, |d| d.count as f64).filter(|count| *count > 0.0).and(of(mesh, value))
+            });
+        }
+    }
+    rows.number("region_hausdorff", |mesh| mesh.region.as_ref()?.accuracy.hausdorff());
+    rows.count("region_lost_points", |mesh| Some(mesh.region.as_ref()?.accuracy.lost_points));
+    rows.count("region_lost_vertices", |mesh| Some(mesh.region.as_ref()?.accuracy.lost_vertices));
+    rows.count("region_self_intersections", |mesh| mesh.region.as_ref()?.self_intersections);
 }
 
 type Named<T, V> = (&'static str, fn(&T) -> V);
@@ -75,19 +108,19 @@ const TETRAHEDRA: [Named<TetrahedraCounts, u64>; 8] = [
 ];
 
 /// What is distributed: its name in columns, and where it stands.
-type Described = (&'static str, fn(&MeshRecord) -> Option<&Distribution>);
+type Described = (&'static str, for<'a> fn(&'a Quality, &'a Accuracy) -> Option<&'a Distribution>);
 
 const DISTRIBUTIONS: [Described; 10] = [
-    ("published_aspect_ratio", |m| Some(&m.quality.published_aspect_ratio)),
-    ("edge_ratio", |m| Some(&m.quality.edge_ratio)),
-    ("radius_ratio", |m| Some(&m.quality.radius_ratio)),
-    ("min_angle_deg", |m| Some(&m.quality.min_angle_deg)),
-    ("max_angle_deg", |m| Some(&m.quality.max_angle_deg)),
-    ("area", |m| Some(&m.quality.area)),
-    ("distance", |m| Some(&m.accuracy.distance)),
-    ("distance_to_mesh", |m| m.accuracy.distance_to_mesh.as_ref()),
-    ("sharp_edges", |m| m.accuracy.sharp_edges.as_ref()),
-    ("normal_error_deg", |m| Some(&m.accuracy.normal_error_deg)),
+    ("published_aspect_ratio", |q, _| Some(&q.published_aspect_ratio)),
+    ("edge_ratio", |q, _| Some(&q.edge_ratio)),
+    ("radius_ratio", |q, _| Some(&q.radius_ratio)),
+    ("min_angle_deg", |q, _| Some(&q.min_angle_deg)),
+    ("max_angle_deg", |q, _| Some(&q.max_angle_deg)),
+    ("area", |q, _| Some(&q.area)),
+    ("distance", |_, a| Some(&a.distance)),
+    ("distance_to_mesh", |_, a| a.distance_to_mesh.as_ref()),
+    ("sharp_edges", |_, a| a.sharp_edges.as_ref()),
+    ("normal_error_deg", |_, a| Some(&a.normal_error_deg)),
 ];
 
 const TOPOLOGY: [Named<Topology, u64>; 10] = [

@@ -4,6 +4,7 @@
 use super::evidence::Evidence;
 use super::told::{self, named};
 use super::{SummaryLine, asked, limits};
+use crate::region;
 use crate::wants;
 use crate::words::{capital, counted, list, number, of_all};
 use isostudy_design::record::Purpose;
@@ -95,7 +96,7 @@ fn regular(inputs: &Inputs<'_>) -> Option<String> {
     let study = inputs.study;
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
     let mean = |method: &Method| {
-        let ratio = |object| known(&meshes.at(object, method.id)?.quality.radius_ratio, |d| d.mean);
+        let ratio = |object| known(&meshes.at(object, method.id)?.judged().quality.radius_ratio, |d| d.mean);
         let all: Option<Vec<f64>> = (0..study.file.objects.len()).map(ratio).collect();
         all.map(|all| all.iter().sum::<f64>() / all.len() as f64)
     };
@@ -106,8 +107,9 @@ fn regular(inputs: &Inputs<'_>) -> Option<String> {
     }
     let best = means.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let worst = means.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let part = region::alone(study).map_or(String::new(), |alone| format!(" {alone}"));
     Some(format!(
-        "{} has the most regular triangles: its mean radius ratio is {}, and that of {} is {} (1 is equilateral).",
+        "{} has the most regular triangles{part}: its mean radius ratio is {}, and that of {} is {} (1 is equilateral).",
         capital(&best.1.label),
         number(best.0, 2),
         worst.1.label,

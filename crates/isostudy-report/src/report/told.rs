@@ -292,7 +292,8 @@ fn best_at(results: &Results<'_>, goal: Goal) -> Option<String> {
         false => format!("{text} on the {}", list(on)),
     };
     let parts: Vec<String> = parts.iter().map(part).collect();
-    (!parts.is_empty()).then(|| format!("{}: {}.", capital(wants::words(goal).heading), parts.join("; ")))
+    let heading = wants::heading(results.inputs.study, goal);
+    (!parts.is_empty()).then(|| format!("{}: {}.", capital(&heading), parts.join("; ")))
 }
 
 /// The side that was chosen more often, and its share of the decided answers.

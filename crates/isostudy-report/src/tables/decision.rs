@@ -1,9 +1,10 @@
 //! Which method to take for what, and who is beaten in both time and error.
 
-use crate::wants::{busy, judged, words};
+use crate::region;
+use crate::wants::{busy, heading, judged, phrase, words};
 use crate::words::{list, whole};
-use isostudy_design::MethodId;
 use isostudy_design::record::BenchRun;
+use isostudy_design::{MethodId, Study};
 use isostudy_inference::decision::{
     Axes, Cost, Estimate, Front, FrontPoint, Goal, LEAST_ERROR, ObjectCandidates, Pick, Standing, noise,
 };
@@ -16,6 +17,9 @@ use isostudy_timing::stage_times::measured;
 /// Ties of more methods are counted; the next table names them.
 const TIED: usize = 4;
 
+/// What a region has numbers of its own for.
+const JUDGED: &str = "Errors, sharp edges, radius ratios, numbers of triangles and of intersecting pairs";
+
 /// A factor below which two are as good as each other.
 const MORE: f64 = 1.05;
 
@@ -24,7 +28,8 @@ pub(super) fn tables(results: &Results<'_>) -> Vec<Table> {
     let (inputs, found) = (&results.inputs, &results.decision);
     let objects = &found.objects;
     let picks = &judged(results)[..];
-    let tables = [choices(inputs, objects, picks), decision(inputs, objects, picks), standings(found)];
+    let tables =
+        [choices(inputs, objects, picks), decision(inputs, objects, picks), standings(inputs.study, found)];
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
 
@@ -57,7 +62,7 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick
     let mut table = Columns::over(rows)
         .column("object", "On", |of| Cell::text(&of.object.name))
         .columns_of(wants.iter().copied(), |all, want| {
-            all.column(words(want).name, words(want).heading, |of| cell(of, want))
+            all.column(words(want).name, &heading(inputs.study, want), |of| cell(of, want))
         })
         .into_table("choices", "The best method for each object and purpose");
     table.notes.push(
@@ -79,7 +84,7 @@ fn decision(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pic
         if on.len() == objects.len() && on.len() > 1 { "every object".into() } else { list(&on) }
     };
     let mut table = Columns::over(picks)
-        .column("want", "You want", |pick| Cell::text(words(pick.want.goal).phrase))
+        .column("want", "You want", |pick| Cell::text(phrase(inputs.study, pick.want.goal)))
         .column("objects", "On", |pick| Cell::text(on(pick)))
         .column("take", "Take", |pick| Cell::text(take(pick)))
         .column("why", "Why", |pick| Cell::text(why(inputs.bench, pick)))
@@ -95,6 +100,7 @@ fn decision(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pic
             note.push_str(" Where a row names several methods, they are not distinguished. Numbers and costs are those of the first.");
         }
         table.notes.push(note);
+        table.notes.extend(region::sentence(inputs.study, JUDGED));
     }
     table
 }
@@ -190,6 +196,9 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> Vec<Stri
     let mut errors = "Mean error: mean distance from mesh to isosurface or back, whichever is larger, in edges of the object's benchmark \
                       cubes. Sharp edges kept: mean distance from the object's sharp edges to the mesh, in that unit."
         .to_owned();
+    if let Some(judged) = region::sentence(inputs.study, JUDGED) {
+        errors.push_str(&format!(" {judged}"));
+    }
     if objects.iter().any(ObjectCandidates::has_least_error) {
         errors.push_str(&format!(" A mean error below {LEAST_ERROR} counts as {LEAST_ERROR}."));
     }
@@ -247,7 +256,7 @@ fn of_times(run: &BenchRun) -> String {
 }
 
 /// Every method in every front: both values, and who beats it in both.
-fn standings<'a>(found: &'a Decision<'a>) -> Table {
+fn standings<'a>(study: &Study, found: &'a Decision<'a>) -> Table {
     let rows = found.each().flat_map(|(of, fronts)| {
         let of_front = move |front: &'a Front| front.points.iter().map(move |point| (of, front.axes, point));
         fronts.iter().flat_map(of_front)
@@ -271,11 +280,15 @@ fn standings<'a>(found: &'a Decision<'a>) -> Table {
                 .column(format!("{name}_high"), "to", |row| end(row, |of| of.high))
         })
         .into_table("fronts", "Methods that another method beats in two quantities at once");
-    table.with_note(
+    let table = table.with_note(
         "First: time in seconds, or triangles. Second: mean error in edges of the object's benchmark cubes, or worth in log-odds above the \
          mean of all methods. Intervals are at 95 %. Beaten: another method is better in one and as good in the other, beyond both intervals. \
          Perhaps beaten: by the estimates alone. A time's interval is wider by what runs of one program differ by.",
-    )
+    );
+    match region::sentence(study, "Errors and triangles") {
+        Some(note) => table.with_note(note),
+        None => table,
+    }
 }
 
 /// In words, and who beats it.

@@ -1,21 +1,22 @@
 //! Triangle quality, topology, and what accumulated positions change.
 
 use crate::distribution::{STATISTICS, purpose_name};
-use isostudy_design::record::{Distribution, MeshRecord, Purpose, Topology, Trilinear};
+use crate::tables::parts::{PART, parts};
+use isostudy_design::record::{Distribution, MeshRecord, Purpose, Quality, Topology, Trilinear};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
 use isostudy_table::{Cell, Columns, Table};
 
 /// A measure: name, heading, unit, decimals for people, and the distribution.
-type Measure = (&'static str, &'static str, &'static str, usize, fn(&MeshRecord) -> &Distribution);
+type Measure = (&'static str, &'static str, &'static str, usize, for<'a> fn(&'a Quality) -> &'a Distribution);
 
 const MEASURES: &[Measure] = &[
-    ("edge_ratio", "Edge ratio", "", 3, |m| &m.quality.edge_ratio),
-    ("published_aspect_ratio", "Published ratio", "", 3, |m| &m.quality.published_aspect_ratio),
-    ("radius_ratio", "Radius ratio", "", 3, |m| &m.quality.radius_ratio),
-    ("min_angle_deg", "Smallest angle, {}", "deg", 1, |m| &m.quality.min_angle_deg),
-    ("max_angle_deg", "Largest angle, {}", "deg", 1, |m| &m.quality.max_angle_deg),
-    ("area", "Area", "", 6, |m| &m.quality.area),
+    ("edge_ratio", "Edge ratio", "", 3, |q| &q.edge_ratio),
+    ("published_aspect_ratio", "Published ratio", "", 3, |q| &q.published_aspect_ratio),
+    ("radius_ratio", "Radius ratio", "", 3, |q| &q.radius_ratio),
+    ("min_angle_deg", "Smallest angle, {}", "deg", 1, |q| &q.min_angle_deg),
+    ("max_angle_deg", "Largest angle, {}", "deg", 1, |q| &q.max_angle_deg),
+    ("area", "Area", "", 6, |q| &q.area),
 ];
 
 /// The meshes at both spacings, with what they are for.
@@ -26,17 +27,26 @@ fn meshes<'a>(inputs: &Inputs<'a>) -> Vec<(Purpose, &'a MeshRecord)> {
 
 /// Quality of the triangles at both spacings: every statistic in CSV; for people one block a measure.
 pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
-    let mut table = Columns::over(meshes(inputs))
-        .column("id", "Id", |(_, mesh)| Cell::text(&mesh.id))
-        .column("purpose", "Mesh", |(purpose, _)| Cell::text(purpose_name(*purpose)))
-        .column("triangles", "Triangles", |(_, mesh)| Cell::count(mesh.quality.triangles))
-        .column("degenerate", "Degenerate", |(_, mesh)| Cell::count(mesh.quality.degenerate))
-        .column("shortest_edge", "Shortest edge", |(_, mesh)| Cell::number(mesh.quality.shortest_edge, 6))
+    let rows = parts(inputs, &[Purpose::Benchmark, Purpose::Stimulus]);
+    let has_regions = rows.iter().any(|of| of.judged.region.is_some());
+    let mut table = Columns::over(rows)
+        .column("id", "Id", |of| Cell::text(&of.mesh.id))
+        .column("purpose", "Mesh", |of| Cell::text(purpose_name(of.purpose)))
+        .columns_if(has_regions, |all| {
+            all.column("part", "Part", |of| Cell::text(of.name())).column(
+                "area_share",
+                "Share of the area",
+                |of| Cell::number(of.area_share(), 3),
+            )
+        })
+        .column("triangles", "Triangles", |of| Cell::count(of.judged.quality.triangles))
+        .column("degenerate", "Degenerate", |of| Cell::count(of.judged.quality.degenerate))
+        .column("shortest_edge", "Shortest edge", |of| Cell::number(of.judged.quality.shortest_edge, 6))
         .columns_of(MEASURES, |all, (measure, heading, unit, decimals, of)| {
             all.columns_of(STATISTICS, |all, (statistic, short, value)| {
                 let (name, heading) = (format!("{measure}_{statistic}"), format!("{heading}, {short}"));
-                all.quantity(name, &heading, unit, |(_, mesh)| {
-                    Cell::number(known(of(mesh), *value), *decimals)
+                all.quantity(name, &heading, unit, |row| {
+                    Cell::number(known(of(row.judged.quality), *value), *decimals)
                 })
             })
         })
@@ -44,10 +54,13 @@ pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
     for (measure, heading, unit, ..) in MEASURES {
         let own = STATISTICS.iter().map(|(statistic, ..)| format!("{measure}_{statistic}"));
         let own: Vec<String> = own.collect();
-        let fixed = ["id", "purpose", "degenerate", "shortest_edge"];
-        let columns: Vec<&str> = fixed.into_iter().chain(own.iter().map(String::as_str)).collect();
+        let fixed: &[&str] = match has_regions {
+            true => &["id", "purpose", "part", "degenerate", "shortest_edge"],
+            false => &["id", "purpose", "degenerate", "shortest_edge"],
+        };
+        let columns: Vec<&str> = fixed.iter().copied().chain(own.iter().map(String::as_str)).collect();
         let mut part = table.block(&heading.replace("{}", unit), &columns);
-        for (column, (_, short, _)) in part.columns[4..].iter_mut().zip(STATISTICS) {
+        for (column, (_, short, _)) in part.columns[fixed.len()..].iter_mut().zip(STATISTICS) {
             column.heading = (*short).into();
         }
         table.parts.push(part);
@@ -59,6 +72,7 @@ pub(super) fn quality(inputs: &Inputs<'_>) -> Option<Table> {
          the shortest edge, which is in scene units."
             .into(),
     );
+    table.notes.extend(has_regions.then(|| PART.into()));
     table.unless_empty()
 }
 
@@ -70,6 +84,7 @@ const TRUTHS_NOTE: &str = "The interpolant: the level set of the samples, interp
 pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
     let meshes = meshes(inputs);
     // What the samples' interpolant has, where some method's samples are those of cells.
+    let has_regions = meshes.iter().any(|(_, mesh)| mesh.region.is_some());
     let has_truth = meshes.iter().any(|(_, mesh)| mesh.trilinear.is_some());
     let count = |count: fn(&Topology) -> u64| {
         move |(_, mesh): &(Purpose, &MeshRecord)| Cell::count(count(&mesh.topology))
@@ -97,6 +112,11 @@ pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
         .column("folded_faces", "Folded faces", count(|t| t.folded_faces))
         .column("self_intersections", "Intersecting pairs", |(_, mesh)| {
             mesh.topology.self_intersections.map_or(Cell::Missing, Cell::count)
+        })
+        .columns_if(has_regions, |all| {
+            all.column("self_intersections_judged", "Intersecting pairs in the region", |(_, mesh)| {
+                mesh.judged().self_intersections.map_or(Cell::Missing, Cell::count)
+            })
         })
         .columns_if(has_truth, |all| {
             all.column(

@@ -1,5 +1,6 @@
 //! What predicts preference: metric by metric, together, object by object.
 
+use crate::region;
 use isostudy_design::Study;
 use isostudy_inference::prediction::{HeldOut, MetricPrediction, Prediction};
 use isostudy_statistics::Coefficient;
@@ -8,10 +9,10 @@ use isostudy_table::{Cell, Columns, Table};
 
 /// Metrics one by one, the model of all of them, predictions by object, and how the metrics hang together.
 pub(super) fn all(study: &Study, prediction: &Prediction) -> Vec<Table> {
-    vec![metrics(prediction), joint(prediction), objects(study, prediction), correlations(prediction)]
+    vec![metrics(study, prediction), joint(prediction), objects(study, prediction), correlations(prediction)]
 }
 
-fn metrics(prediction: &Prediction) -> Table {
+fn metrics(study: &Study, prediction: &Prediction) -> Table {
     type Row<'a> = &'a MetricPrediction;
     fn chosen(of: Row<'_>, outcome: usize) -> Cell {
         Cell::count(of.better.test.counts.unwrap_or_default()[outcome])
@@ -81,6 +82,7 @@ fn metrics(prediction: &Prediction) -> Table {
          more people would fit better and win other pairs, and no interval tried covers what they would show. Intervals of shares are cut at 0 and 1."
             .into(),
     );
+    table.notes.extend(region::sentence(study, "Metrics"));
     table
 }
 

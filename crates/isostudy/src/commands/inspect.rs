@@ -8,16 +8,18 @@ use crate::pipeline::Pipeline;
 use crate::prepare::{self, Prepared, Spacings, Wanted, prepare};
 use crate::recipe::{self, Recipe, recipe};
 use crate::records::mesh_record;
+use crate::region;
 use crate::store::Store;
 use crate::terminal::say;
 use crate::{input, machine};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use isostudy_bench::Measured;
+use isostudy_design::config::RegionSection;
 use isostudy_design::machine::CpuProfile;
-use isostudy_design::record::{BenchSample, Purpose};
+use isostudy_design::record::{BenchSample, Purpose, RegionMeasures};
 use isostudy_design::{ConfigurationId, Study};
-use isostudy_extract::{Execution, Extractor};
+use isostudy_extract::{Execution, Extractor, IsosurfacePoints, accuracy_beside};
 use isostudy_report::Panel;
 use std::path::{Path, PathBuf};
 
@@ -136,7 +138,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         prepared.make(&mut Extractor::new(), &execution).with_context(|| id.to_string())?;
     let Prepared { field, grid, isovalue, .. } = &prepared;
     let accuracy = isostudy_extract::accuracy(&mesh, *field, *isovalue, grid, &execution)?;
-    let record = mesh_record(&id, Purpose::Benchmark, spacing, prepared.cells()?, counts, &mesh, &accuracy);
+    let within = |at: &RegionSection| -> Result<RegionMeasures> {
+        let points = IsosurfacePoints::of(*field, *isovalue, grid, Some(region::bounds(at)), &execution)?;
+        let of = accuracy_beside(&points, &mesh, *field, *isovalue, grid.spacing, &execution)?;
+        Ok(region::measures(at, &mesh, &of))
+    };
+    let region = study.object(configuration).region.as_ref().map(within).transpose()?;
+    let measures = (&accuracy, region);
+    let record = mesh_record(&id, Purpose::Benchmark, spacing, prepared.cells()?, counts, &mesh, measures);
     let samples = times(&prepared, arguments)?;
     let threads = match arguments.threads {
         0 => std::thread::available_parallelism().map_or(1, |n| n.get() as u32),

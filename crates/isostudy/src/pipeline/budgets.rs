@@ -4,6 +4,7 @@ use super::Pipeline;
 use super::meshes::purpose_name;
 use crate::prepare::{self, Wanted};
 use crate::recipe::Recipe;
+use crate::region;
 use crate::terminal::progress::Step;
 use anyhow::{Context, Result, bail};
 use isostudy_design::config::{BudgetSection, Quantity};
@@ -178,7 +179,11 @@ impl Pipeline<'_> {
         let made = prepared.make(&mut Extractor::new(), &Execution { threads: self.threads })?;
         match budget.quantity {
             Quantity::Samples => Ok(made.counts.samples.context("checked when the study was read")? as f64),
-            _ => Ok(made.counts.triangles as f64),
+            // As many where it is judged, whatever the block's walls take.
+            _ => match &self.study.object(configuration).region {
+                Some(region) => Ok(region::triangles(&made.mesh, region).count() as f64),
+                None => Ok(made.counts.triangles as f64),
+            },
         }
     }
 }

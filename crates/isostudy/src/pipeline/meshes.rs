@@ -7,12 +7,12 @@ use crate::records::mesh_record;
 use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
 use crate::trilinear_truth::trilinear_truth;
-use crate::{recipe, source_digests};
+use crate::{recipe, region, source_digests};
 use anyhow::{Context, Result};
-use isostudy_design::record::{MeshRecord, Purpose};
+use isostudy_design::record::{MeshRecord, Purpose, RegionMeasures};
 use isostudy_design::{Configuration, ConfigurationId};
 use isostudy_extract::{BoxGrid, Execution, ExtractError, Extractor, IsosurfacePoints, accuracy_beside};
-use isostudy_mesh::TriangleMesh;
+use isostudy_mesh::{Bounds, TriangleMesh};
 use std::sync::PoisonError;
 
 /// How far a mesh moves the bar, which moves while one is extracted: a large volume takes minutes.
@@ -39,7 +39,7 @@ impl Meshes {
 #[derive(Default)]
 pub(super) struct Isosurfaces {
     object: usize,
-    of_grids: Vec<((f32, BoxGrid), IsosurfacePoints)>,
+    of_grids: Vec<((f32, BoxGrid, Option<Bounds>), IsosurfacePoints)>,
 }
 
 impl Isosurfaces {
@@ -49,12 +49,13 @@ impl Isosurfaces {
         object: usize,
         isovalue: f32,
         grid: &BoxGrid,
+        region: Option<Bounds>,
         find: impl FnOnce() -> Result<IsosurfacePoints, ExtractError>,
     ) -> Result<&IsosurfacePoints, ExtractError> {
         if self.object != object {
             *self = Self { object, of_grids: Vec::new() };
         }
-        let key = (isovalue, *grid);
+        let key = (isovalue, *grid, region);
         let place = match self.of_grids.iter().position(|(known, _)| *known == key) {
             Some(place) => place,
             None => {
@@ -128,10 +129,9 @@ impl Pipeline<'_> {
             // On one thread, so that calls of the field are counted.
             let execution = Execution { threads: 1 };
             let Made { mesh, counts, program } = self.make(configuration, &prepared, &execution, step)?;
-            let accuracy = self.accuracy(configuration.object, &prepared, &mesh)?;
-            let cells = prepared.cells()?;
-            let mut record =
-                mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, &accuracy);
+            let (accuracy, region) = self.accuracy(configuration.object, &prepared, &mesh)?;
+            let (cells, measures) = (prepared.cells()?, (&accuracy, region));
+            let mut record = mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, measures);
             record.trilinear = trilinear_truth(&prepared, cells);
             record.program = program;
             // The indexed variant is only measured: nothing is rendered from it.
@@ -156,6 +156,7 @@ impl Pipeline<'_> {
             .value("purpose", &purpose)
             .value("volume", &(object.min, object.max))
             .value("isovalue", &object.isovalue)
+            .value("region", &object.region)
             .value("recipe", &self.study.method(configuration.id.method).recipe)
             .value("recipe files", &recipe::inputs(self.study, configuration.id.method)?)
             .text("field", self.fields.inputs(configuration.object)?))
@@ -178,19 +179,25 @@ impl Pipeline<'_> {
         prepared.make(&mut extractor, execution).with_context(place)
     }
 
-    /// How well a configuration's mesh stands for its isosurface.
+    /// How well a configuration's mesh stands for its isosurface, and what it is in the object's region.
     pub(super) fn accuracy(
         &self,
         object: usize,
         prepared: &Prepared<'_>,
         mesh: &TriangleMesh,
-    ) -> Result<isostudy_extract::Accuracy> {
+    ) -> Result<(isostudy_extract::Accuracy, Option<RegionMeasures>)> {
         let Prepared { field, grid, isovalue, .. } = prepared;
         let execution = Execution { threads: self.threads };
         let mut kept = self.isosurfaces.lock().unwrap_or_else(PoisonError::into_inner);
-        let find = || IsosurfacePoints::of(*field, *isovalue, grid, &execution);
-        let points = kept.of(object, *isovalue, grid, find)?;
-        Ok(accuracy_beside(points, mesh, *field, *isovalue, grid.spacing, &execution)?)
+        let mut of = |region: Option<Bounds>| {
+            let find = || IsosurfacePoints::of(*field, *isovalue, grid, region, &execution);
+            let points = kept.of(object, *isovalue, grid, region, find)?;
+            accuracy_beside(points, mesh, *field, *isovalue, grid.spacing, &execution)
+        };
+        let whole = of(None)?;
+        let region = self.study.file.objects[object].region.as_ref();
+        let within = region.map(|at| Ok(region::measures(at, mesh, &of(Some(region::bounds(at)))?)));
+        Ok((whole, within.transpose().map_err(|error: ExtractError| error)?))
     }
 
     /// The records of finished meshes.

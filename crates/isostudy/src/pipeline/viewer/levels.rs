@@ -101,10 +101,11 @@ impl Pipeline<'_> {
                 match self.at_another_spacing(configuration, &prepared, step)? {
                     Err(why) => entry.missing = Some(why),
                     Ok(Made { mesh, counts, program }) => {
-                        let accuracy = self.accuracy(configuration.object, &prepared, &mesh)?;
+                        let (accuracy, region) = self.accuracy(configuration.object, &prepared, &mesh)?;
                         let cells = prepared.cells()?;
                         let purpose = Purpose::Stimulus;
-                        let record = mesh_record(id, purpose, spacing, cells, counts, &mesh, &accuracy);
+                        let measures = (&accuracy, region);
+                        let record = mesh_record(id, purpose, spacing, cells, counts, &mesh, measures);
                         entry.mesh = Some(MeshRecord { program, ..record });
                         self.write_level(&prepared, &mesh, &path, writer)?;
                     }
