@@ -76,14 +76,14 @@ fn crossings_are_exact_to_four_units_in_the_last_place() {
                 assert!(chunk.positions.len() > 500);
                 let point = |corner: [i32; 3]| grid.position(corner).map(|c| c as f32);
                 for (key, p) in chunk.keys.iter().zip(&chunk.positions) {
+                    // The last bits are the edge's axis; vertices of tunnels have more, and are no crossings.
+                    let axis = (key.number() & 31) as usize;
+                    if axis > 2 {
+                        continue;
+                    }
                     let from = key.cell();
                     let low = point(from);
-                    let off: Vec<usize> = (0..3).filter(|&axis| p[axis] != low[axis]).collect();
-                    // Vertices in the middle of a tunnel are no crossings.
-                    let [axis] = off[..] else {
-                        assert!(faces == Faces::Trilinear && off.len() == 3);
-                        continue;
-                    };
+                    assert!((0..3).all(|other| other == axis || p[other] == low[other]));
                     let mut to = from;
                     to[axis] += 1;
                     let high = point(to);
