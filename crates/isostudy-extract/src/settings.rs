@@ -57,7 +57,7 @@ pub enum Clustering {
     /// Integrated clustering, then an edge collapse of what it leaves.
     IntegratedCollapse,
     /// The warp of isosurface stuffing (Labelle & Shewchuk 2007), for the body-centred lattice: a lattice point with a crossing nearer to
-    /// it than a share of its edge, 0.24999 or 0.41189, is moved to the nearest such crossing, and all crossings on its edges become one
+    /// it than a share of its edge, 0.24999 or 0.359, is moved to the nearest such crossing, and all crossings on its edges become one
     /// vertex there. No triangle is thin; parts thinner than a cell vanish, and sheets of surface may touch: the mesh is closed, and no
     /// manifold where they do.
     Warp,

@@ -183,10 +183,24 @@ pub(crate) fn corner_of([x, y, z]: [usize; 3], corner: u8) -> [usize; 3] {
     [x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)]
 }
 
+/// The share of the way between two coordinates, and beside both ends: where a sample equals the isovalue, vertices on different edges
+/// would lie in its place. As far off as the end's last place, or that of the edge's length if it is larger. Points of three edges of a
+/// cube that are no corners never lie in a line, so no triangle is without area.
+#[inline(always)]
+fn within(from: f32, to: f32, ratio: f64) -> f32 {
+    let way = to - from;
+    let off = |end: f32| (f32::EPSILON * end.abs().max(way)).min(MOST_OFF * way);
+    let at = (f64::from(from) + (f64::from(to) - f64::from(from)) * ratio) as f32;
+    at.max(from + off(from)).min(to - off(to))
+}
+
+/// The same as a share of the edge is never more than this, however coarse `f32` is there.
+const MOST_OFF: f32 = 0.125;
+
 /// Where on its edge a crossing is.
 pub(crate) struct Placer<'a> {
     isovalue: f32,
-    /// How near to either end it may lie.
+    /// How near to either end it may lie, but for vertices on edges along an axis.
     apart: Apart,
     /// The same where it is a root.
     clamp: f32,
@@ -216,7 +230,7 @@ impl<'a> Placer<'a> {
     }
 
     /// The crossing by linear interpolation, on the edge that begins at a place. Of the edge alone, so that chunks, slabs and cells
-    /// agree.
+    /// agree. It is within four units in the last place of the exact one, and strictly between the ends: see [`within`].
     #[inline]
     pub(crate) fn position(
         &self,
@@ -227,10 +241,12 @@ impl<'a> Placer<'a> {
     ) -> Vec3 {
         let mut position = grid.position(place);
         let [from, to] = [0, 1].map(|step| grid.at[axis][place[axis] + step]);
-        let least = self.apart.at(position).ratio(Company::Singles, 0, 0.0);
-        let ratio = linear_ratio(self.isovalue - here, here, there).clamp(least, 1.0 - least);
+        let [here, there] = [here, there].map(f64::from);
+        let ratio = (f64::from(self.isovalue) - here) / (there - here);
+        // As `linear_ratio` has it.
+        let ratio = if ratio.is_finite() { clamped(ratio, self.clamp) } else { 0.5 };
         let ratio = if self.pull > 0.0 { self.drawn(ratio, grid, place, axis) } else { ratio };
-        position[axis] = (from + (to - from) * ratio).clamp(from, to);
+        position[axis] = within(from, to, ratio);
         position
     }
 
@@ -258,12 +274,12 @@ impl<'a> Placer<'a> {
     }
 
     #[inline(never)]
-    fn drawn(&self, ratio: f32, grid: &CubeGrid, place: [usize; 3], axis: usize) -> f32 {
+    fn drawn(&self, ratio: f64, grid: &CubeGrid, place: [usize; 3], axis: usize) -> f64 {
         let is_on_side = |other: usize| place[other] == 0 || place[other] + 1 == grid.size[other];
         if (0..3).any(|other| other != axis && is_on_side(other)) {
             return ratio;
         }
-        ratio + (0.5 - ratio) * self.pull
+        ratio + (0.5 - ratio) * f64::from(self.pull)
     }
 
     /// Where the settings want it, if elsewhere.

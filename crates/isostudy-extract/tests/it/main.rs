@@ -10,6 +10,7 @@ mod closing;
 mod continuation;
 mod control;
 mod cubes;
+mod cubes_exact;
 mod cubes_odd_input;
 mod cubes_trilinear;
 mod cubes_vtk;

@@ -1,4 +1,4 @@
-//! What the warp's tests share: the published shares, the lattice's directions, and a mesh by the extractor.
+//! What the warp's tests share: the shares, the lattice's directions, and a mesh by the extractor.
 
 use crate::fields::Volume;
 use isostudy_extract::by_lattice::{ExtractSettings, extract};
@@ -15,8 +15,8 @@ pub(crate) const WARP: ExtractSettings = ExtractSettings {
     refine_crossings: false,
     edge_clamp: 0.0,
 };
-/// As published: of edges between two centres or two corners, and of the others.
-pub(crate) const ALPHA: [f64; 2] = [0.24999, 0.41189];
+/// Of edges between two centres or two corners, and of the others.
+pub(crate) const ALPHA: [f64; 2] = [0.24999, 0.359];
 
 pub(crate) type Place = [i32; 3];
 
