@@ -59,17 +59,14 @@
 
 mod answer;
 mod error;
-mod group;
-mod lines;
 mod mesh_file;
 mod program;
 mod request;
-mod tail;
 mod worker;
 
 pub use answer::{Answer, Ready};
-pub use error::{End, Phase, Problem, ProgramError};
-pub use group::Memory;
+pub use error::{Phase, Problem, ProgramError};
+pub use isostudy_foreign::{End, Memory};
 pub use program::Program;
 pub use request::{Request, Samples, write_samples};
 pub use worker::{LINE_LIMIT_BYTES, Worker};

@@ -7,6 +7,8 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use isostudy_foreign::shown_in_a_line;
+
 use crate::error::{Problem, ProgramError};
 
 /// A program that extracts, as a study names it.
@@ -67,7 +69,8 @@ impl Program {
     }
 
     pub(crate) fn error(&self, problem: Problem) -> ProgramError {
-        ProgramError { program: self.command.join(" "), problem: Box::new(problem), stderr: String::new() }
+        let program = shown_in_a_line(&self.command.join(" ")).into_owned();
+        ProgramError { program, problem: Box::new(problem), stderr: String::new() }
     }
 }
 
