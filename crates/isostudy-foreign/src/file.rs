@@ -85,9 +85,14 @@ impl FileProblem {
     }
 }
 
-/// Whether a path leads to a regular file.
-pub fn is_file(path: &Path) -> bool {
-    path.is_file()
+impl From<FileError> for io::Error {
+    /// Without the path, for errors that name it themselves.
+    fn from(error: FileError) -> Self {
+        match error.problem {
+            FileProblem::Io(error) => error,
+            problem => Self::other(problem.to_string()),
+        }
+    }
 }
 
 /// Opens a regular file for reading. Nothing is waited for: it is looked at before, since to open a device may do something, and

@@ -38,7 +38,7 @@ mod tail;
 mod wrapper;
 
 pub use child::{Child, Limits, Stopped};
-pub use file::{FileError, FileProblem, Kind, LINE_LIMIT_BYTES, bytes, is_file, open, text};
+pub use file::{FileError, FileProblem, Kind, LINE_LIMIT_BYTES, bytes, open, text};
 pub use folder::Folder;
 pub use group::{End, Memory};
 pub use interrupt::leave_signals_to_others;

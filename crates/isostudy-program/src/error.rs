@@ -93,6 +93,12 @@ pub enum Problem {
     /// A memory limit where memory cannot be watched.
     #[error("its memory limit cannot be kept: there is no /proc here to watch it by; leave the limit out")]
     NotWatched,
+    /// There is no sandbox to run it in.
+    #[error("cannot be run in a sandbox: {reason}")]
+    NoSandbox {
+        /// Why not.
+        reason: String,
+    },
     /// The request cannot be made.
     #[error("{key}: {reason}")]
     Request {

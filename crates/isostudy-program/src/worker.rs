@@ -11,6 +11,7 @@ use crate::error::{Phase, Problem, ProgramError, shortened};
 use crate::mesh_file;
 use crate::program::Program;
 use crate::request::{Line, Request, Samples, write_samples};
+use crate::sandbox;
 
 /// The longest line that a program may say, without its end.
 pub const LINE_LIMIT_BYTES: usize = 65_536;
@@ -115,8 +116,12 @@ impl Worker {
     }
 
     fn spawn(program: &Program) -> Result<Self, Problem> {
-        let words = program.resolved()?;
+        let mut words = program.resolved()?;
         let folder = Folder::new().map_err(Problem::io(&std::env::temp_dir()))?;
+        if program.sandbox {
+            sandbox::check()?;
+            words = sandbox::confined(words, folder.path());
+        }
         let mut command = Command::new(&words[0]);
         command.args(&words[1..]).current_dir(folder.path()).env("TMPDIR", folder.path());
         let limits = Limits { line_bytes: LINE_LIMIT_BYTES, memory_bytes: program.memory_limit_bytes };

@@ -147,7 +147,7 @@ fn file_name(path: &Path) -> String {
 }
 
 fn fact(path: &Path, camera: Option<[f64; 3]>) -> Result<StimulusFacts> {
-    let bytes = std::fs::read(path)?;
+    let bytes = input::bytes(path)?;
     let animation = Animation::read_gif(bytes.as_slice())?;
     let colours = animation.palette.colours();
     let corner = animation.frames.first().and_then(|frame| frame.first()).map_or(0, |&index| index);
