@@ -52,7 +52,14 @@ pub struct ProcessExecutor<'a> {
 impl<'a> ProcessExecutor<'a> {
     /// An executor that asks what this command starts. Any failure ends its run.
     pub fn new(command: &'a dyn Fn() -> Command) -> Self {
-        Self { command, may_fail: &|_| false, tell: None, allowance: Allowance::default(), worker: None, pinned: None }
+        Self {
+            command,
+            may_fail: &|_| false,
+            tell: None,
+            allowance: Allowance::default(),
+            worker: None,
+            pinned: None,
+        }
     }
 
     /// The same, but configurations of which `may_fail` says so, by index, are left out once the measuring process answers that
@@ -281,7 +288,10 @@ mod tests {
             ("printf '\\033[2K\\r{}'".to_owned(), "ended before it answered"),
             ("printf '\\033[2Kforged\\n'".to_owned(), "said `\\u001b[2Kforged`"),
             (format!("{ready} kill -9 $$"), "signal 9"),
-            (format!("{ready} head -c 300000000 /dev/zero | tail; sleep 1000"), "bytes of memory; its limit is"),
+            (
+                format!("{ready} head -c 300000000 /dev/zero | tail; sleep 1000"),
+                "bytes of memory; its limit is",
+            ),
         ] {
             let command = || {
                 let mut command = Command::new("sh");

@@ -176,10 +176,15 @@ mod tests {
         {
             let error = of(name);
             assert!(matches!(error.problem, FileProblem::NotAFile(found) if found == kind), "{error}");
-            assert_eq!(error.to_string(), format!("{}: not a file, but a {name}", at(name).display()).replace("a zero", "a device"));
+            assert_eq!(
+                error.to_string(),
+                format!("{}: not a file, but a {name}", at(name).display()).replace("a zero", "a device")
+            );
         }
         let missing = of("missing");
-        assert!(matches!(&missing.problem, FileProblem::Io(error) if error.kind() == io::ErrorKind::NotFound));
+        assert!(
+            matches!(&missing.problem, FileProblem::Io(error) if error.kind() == io::ErrorKind::NotFound)
+        );
         assert!(missing.to_string().starts_with(&at("missing").display().to_string()), "{missing}");
     }
 
@@ -194,7 +199,10 @@ mod tests {
         File::create(&path).unwrap().set_len(1 << 40).unwrap();
         assert!(matches!(bytes(&path, 1 << 20).unwrap_err().problem, FileProblem::TooLarge { .. }));
         // Files of the system say that they have none.
-        assert!(matches!(bytes(Path::new("/proc/self/stat"), 5).unwrap_err().problem, FileProblem::TooLarge { .. }));
+        assert!(matches!(
+            bytes(Path::new("/proc/self/stat"), 5).unwrap_err().problem,
+            FileProblem::TooLarge { .. }
+        ));
     }
 
     #[test]
@@ -204,7 +212,10 @@ mod tests {
         fs::write(&path, ["short\n", &"x".repeat(LINE_LIMIT_BYTES), "\n"].concat()).unwrap();
         assert_eq!(text(&path, 1 << 30).unwrap().lines().count(), 2);
         fs::write(&path, ["short\n", &"x".repeat(LINE_LIMIT_BYTES + 1), "\n"].concat()).unwrap();
-        assert!(matches!(text(&path, 1 << 30).unwrap_err().problem, FileProblem::LineTooLong { line: 2, .. }));
+        assert!(matches!(
+            text(&path, 1 << 30).unwrap_err().problem,
+            FileProblem::LineTooLong { line: 2, .. }
+        ));
         fs::write(&path, b"ab\xff").unwrap();
         assert!(matches!(text(&path, 1 << 30).unwrap_err().problem, FileProblem::NotUtf8 { at: 2 }));
     }

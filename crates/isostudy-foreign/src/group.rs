@@ -1,11 +1,11 @@
 //! A process and all that it starts: its end and its memory.
 
+use std::fmt;
 use std::io;
 use std::os::unix::process::ExitStatusExt;
 use std::process::{self, Command, ExitStatus};
 use std::thread;
 use std::time::{Duration, Instant};
-use std::fmt;
 
 use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
 

@@ -33,9 +33,7 @@ pub fn leave_signals_to_others() {
 }
 
 /// Starts a child and keeps it, with no moment between in which a signal would find it started and not kept.
-pub(crate) fn register(
-    start: impl FnOnce() -> io::Result<(Child, Family)>,
-) -> io::Result<(Child, Family)> {
+pub(crate) fn register(start: impl FnOnce() -> io::Result<(Child, Family)>) -> io::Result<(Child, Family)> {
     listen();
     let mut kept = kept();
     let (child, family) = start()?;

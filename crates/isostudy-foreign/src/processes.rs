@@ -7,7 +7,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use rustix::process::{Pid, PidfdFlags, Signal, kill_process, kill_process_group, pidfd_open, pidfd_send_signal};
+use rustix::process::{
+    Pid, PidfdFlags, Signal, kill_process, kill_process_group, pidfd_open, pidfd_send_signal,
+};
 
 /// The variable of the environment that a child and all that it starts have. Its value is `,A,B,`: the child A of a child B of ours.
 pub(crate) const MARK: &str = "ISOSTUDY_CHILD";
@@ -65,9 +67,9 @@ impl Family {
         let Some(environment) = read(process, "environ", ENVIRONMENT_LIMIT) else { return false };
         let sought = format!(",{},", self.mark);
         let variables = environment.split(|&byte| byte == 0);
-        variables.filter_map(|variable| variable.strip_prefix(MARK.as_bytes())).any(|value| {
-            value.windows(sought.len()).any(|part| part == sought.as_bytes())
-        })
+        variables
+            .filter_map(|variable| variable.strip_prefix(MARK.as_bytes()))
+            .any(|value| value.windows(sought.len()).any(|part| part == sought.as_bytes()))
     }
 
     /// Kills all of it, again and again until nothing is left that can be.

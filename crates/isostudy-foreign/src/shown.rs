@@ -8,7 +8,8 @@ use std::fmt::Write;
 /// Control characters are those of Unicode (category Cc). The marks that turn the direction of text are those of its annex 9,
 /// section 2; the separators of lines and paragraphs begin a line without being a line feed.
 fn is_forging(c: char) -> bool {
-    let is_mark = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let is_mark =
+        matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     c.is_control() || is_mark || matches!(c, '\u{2028}' | '\u{2029}')
 }
 
@@ -48,7 +49,10 @@ mod tests {
     fn what_forges_is_escaped_and_all_else_stays() {
         assert!(matches!(shown("plain, größer, 中文, עברית, e\u{301}\n\tnext\r\n"), Cow::Borrowed(_)));
         assert_eq!(shown("a\r\u{1b}[2Kb"), "a\\u000d\\u001b[2Kb");
-        assert_eq!(shown("\u{7f}\u{9b}31m \u{202e}txt\u{2066}\u{200f}\u{2028}"), "\\u007f\\u009b31m \\u202etxt\\u2066\\u200f\\u2028");
+        assert_eq!(
+            shown("\u{7f}\u{9b}31m \u{202e}txt\u{2066}\u{200f}\u{2028}"),
+            "\\u007f\\u009b31m \\u202etxt\\u2066\\u200f\\u2028"
+        );
         assert_eq!(shown_in_a_line("a\nb\tc\r\n"), "a\\u000ab\\u0009c\\u000d\\u000a");
     }
 

@@ -99,7 +99,9 @@ impl Lines {
         self.count += 1;
         match self.count {
             ..=TOLD_LINES => (self.told)(String::from_utf8_lossy(&self.line).trim_end_matches('\r')),
-            count if count == TOLD_LINES + 1 => (self.told)("it says more on standard error, which is not shown"),
+            count if count == TOLD_LINES + 1 => {
+                (self.told)("it says more on standard error, which is not shown")
+            }
             _ => {}
         }
         self.line.clear();

@@ -46,7 +46,13 @@ pub fn wrapper() -> Option<ExitCode> {
     if cfg!(target_os = "linux") {
         let (sender, starts) = channel::<Start>();
         let all = move || {
-            for Start { mut command, started, #[cfg(target_os = "linux")] cpus } in starts {
+            for Start {
+                mut command,
+                started,
+                #[cfg(target_os = "linux")]
+                cpus,
+            } in starts
+            {
                 #[cfg(target_os = "linux")]
                 if let Some(cpus) = cpus {
                     let _ = rustix::thread::sched_setaffinity(None, &cpus);
@@ -69,7 +75,9 @@ fn become_child(arguments: &[OsString]) -> Error {
     let _ = setsid();
     #[cfg(target_os = "linux")]
     {
-        if let Err(error) = rustix::process::set_parent_process_death_signal(Some(rustix::process::Signal::KILL)) {
+        if let Err(error) =
+            rustix::process::set_parent_process_death_signal(Some(rustix::process::Signal::KILL))
+        {
             return error.into();
         }
         // The parent may have gone before.
@@ -77,7 +85,8 @@ fn become_child(arguments: &[OsString]) -> Error {
             return ErrorKind::BrokenPipe.into();
         }
     }
-    let limited = |resource, limit| setrlimit(resource, Rlimit { current: Some(limit), maximum: Some(limit) });
+    let limited =
+        |resource, limit| setrlimit(resource, Rlimit { current: Some(limit), maximum: Some(limit) });
     let _ = limited(Resource::Core, 0);
     if let Some(bytes) = number(memory) {
         let _ = limited(Resource::Data, bytes);

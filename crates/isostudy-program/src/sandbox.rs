@@ -18,8 +18,22 @@ const TRIAL: Duration = Duration::from_secs(20);
 /// are hidden. Processes end with the first of them.
 fn confinement(folder: &Path) -> Vec<OsString> {
     let mut words: Vec<OsString> = [
-        "--unshare-all", "--die-with-parent", "--cap-drop", "ALL", "--ro-bind", "/", "/", "--dev", "/dev", "--proc", "/proc",
-        "--tmpfs", "/run", "--ro-bind-try", "/run/current-system", "/run/current-system",
+        "--unshare-all",
+        "--die-with-parent",
+        "--cap-drop",
+        "ALL",
+        "--ro-bind",
+        "/",
+        "/",
+        "--dev",
+        "/dev",
+        "--proc",
+        "/proc",
+        "--tmpfs",
+        "/run",
+        "--ro-bind-try",
+        "/run/current-system",
+        "/run/current-system",
     ]
     .map(OsString::from)
     .to_vec();

@@ -105,7 +105,9 @@ fn covers(known: &Allowed, wanted: &Allowed) -> bool {
 fn wanted(study: &Study, sandbox: bool, record: &Record) -> Result<Vec<Wanted>> {
     let mut all = Vec::new();
     for method in &study.methods {
-        let Recipe::Program(program) = recipe::recipe(study, method.id, Purpose::Benchmark)? else { continue };
+        let Recipe::Program(program) = recipe::recipe(study, method.id, Purpose::Benchmark)? else {
+            continue;
+        };
         let words = program.words().with_context(|| recipe::key(study, method.id))?;
         let mut files = BTreeMap::new();
         for path in words.iter().map(Path::new).filter(|path| path.is_absolute() && path.is_file()) {
@@ -169,7 +171,11 @@ fn command_line() -> String {
 
 fn for_shell(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_@%+=:,./-".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
 }
 
 #[cfg(test)]
@@ -193,7 +199,9 @@ mod tests {
 
     #[test]
     fn words_survive_a_shell() {
-        for (word, quoted) in [("a.toml", "a.toml"), ("", "''"), ("a b", "'a b'"), ("it's;$x", "'it'\\''s;$x'")] {
+        for (word, quoted) in
+            [("a.toml", "a.toml"), ("", "''"), ("a b", "'a b'"), ("it's;$x", "'it'\\''s;$x'")]
+        {
             assert_eq!(for_shell(word), quoted);
         }
     }

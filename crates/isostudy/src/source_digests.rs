@@ -29,7 +29,8 @@ pub(crate) const MESHES: &[&str] =
 /// What makes pictures of meshes.
 pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.
-pub(crate) const TIMINGS: &[&str] = &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, CELLS, EXTRACT, PROGRAM, BENCH, CLI];
+pub(crate) const TIMINGS: &[&str] =
+    &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, CELLS, EXTRACT, PROGRAM, BENCH, CLI];
 /// What makes tables, figures and the report.
 pub(crate) const TABLES: &[&str] =
     &[DESIGN, RESPONSES, STATISTICS, TABLE, TIMING, INFERENCE, REPORT, PAPER, CLI, PAGE];

@@ -3,12 +3,12 @@
 use super::Pipeline;
 use super::formats::write_table;
 use super::worker::is_program;
-use crate::{input, machine};
 use crate::store::{Inputs, remove_if_there, sha256, write_whole};
 use crate::terminal::progress::Step;
 use crate::terminal::tell_once;
+use crate::{input, machine};
 use anyhow::{Context, Result};
-use isostudy_bench::{AbEntry, Allowance, AbPlan, BenchError, ProcessExecutor, run_ab};
+use isostudy_bench::{AbEntry, AbPlan, Allowance, BenchError, ProcessExecutor, run_ab};
 use isostudy_design::ConfigurationId;
 use isostudy_design::record::{AbProgram, AbRun, Purpose};
 use std::fs::File;
@@ -73,7 +73,8 @@ impl Pipeline<'_> {
             let begun = AbEntry::Begun { key: key.clone() };
             let lines: String = [&begun].into_iter().chain(&done).map(AbEntry::line).collect();
             write_whole(&journal, lines.as_bytes())?;
-            let mut file = File::options().append(true).open(&journal).with_context(|| journal.display().to_string())?;
+            let mut file =
+                File::options().append(true).open(&journal).with_context(|| journal.display().to_string())?;
             let mut record = |entry: &AbEntry| file.write_all(entry.line().as_bytes());
             let (_folder, spacings) = self.spacings_file()?;
             let told = self.invocation([section.threads, u32::from(section.pin)], &ids, &spacings)?;
@@ -113,7 +114,8 @@ impl Pipeline<'_> {
             tell!("bench ab: nothing was measured; --force measures again");
         }
         let path = self.store.root().join(stamp.file("ab.json"));
-        let run: AbRun = serde_json::from_slice(&input::bytes(&path)?).with_context(|| path.display().to_string())?;
+        let run: AbRun =
+            serde_json::from_slice(&input::bytes(&path)?).with_context(|| path.display().to_string())?;
         for (pair, place) in run.pairs.iter().zip(0..) {
             pair.check().with_context(|| format!("{}: pairs[{place}]", path.display()))?;
         }

@@ -103,11 +103,11 @@ impl Pipeline<'_> {
         let done = self.take_up(journal, key, job)?;
         let lines: String = [Entry::Begun { key: key.into() }].iter().chain(&done).map(Entry::line).collect();
         write_whole(journal, lines.as_bytes())?;
-        let mut file = File::options().append(true).open(journal).with_context(|| journal.display().to_string())?;
+        let mut file =
+            File::options().append(true).open(journal).with_context(|| journal.display().to_string())?;
         let program = std::env::current_exe().context("cannot find this program to start it again")?;
         let (_folder, spacings) = self.spacings_file()?;
-        let mut invocation =
-            self.invocation([plan.threads, u32::from(plan.pin)], &job.ids(), &spacings)?;
+        let mut invocation = self.invocation([plan.threads, u32::from(plan.pin)], &job.ids(), &spacings)?;
         invocation.cells = job.cells;
         let worker = || invocation.command(&program);
         let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());

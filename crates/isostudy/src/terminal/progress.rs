@@ -20,7 +20,14 @@ impl Step {
         let style = ProgressStyle::with_template("{msg:14} {wide_bar} {percent:>3} % {eta}")
             .expect("the template is a constant");
         let bar = ProgressBar::new(ticks as u64).with_style(style).with_message(name);
-        Self { name, bar, items, redone: AtomicUsize::new(0), failed: AtomicUsize::new(0), began: Instant::now() }
+        Self {
+            name,
+            bar,
+            items,
+            redone: AtomicUsize::new(0),
+            failed: AtomicUsize::new(0),
+            began: Instant::now(),
+        }
     }
 
     /// Moves the bar on.
