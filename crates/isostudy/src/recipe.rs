@@ -274,7 +274,7 @@ pub(crate) fn files(study: &Study, id: MethodId) -> Result<Vec<(String, String)>
         Recipe::Meshes(files) => files.into_values().collect(),
     };
     let folder = study.path.parent().unwrap_or(Path::new(""));
-    let absolute = std::env::current_dir()?.join(folder);
+    let absolute = std::env::current_dir().context("this folder is not there")?.join(folder);
     let digest = |path: &PathBuf| {
         let bytes = isostudy_foreign::bytes(path, LARGEST_BYTES)?;
         let short = path.strip_prefix(&absolute).or(path.strip_prefix(folder)).unwrap_or(path);

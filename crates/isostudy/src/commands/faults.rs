@@ -103,7 +103,8 @@ pub(super) fn bundle_faults(study: &Study, folder: &Path) -> Result<Vec<Fault>> 
     for ending in ["gif", "mp4", "webm"] {
         let mut sizes = Vec::new();
         for file in input::files_of(folder, ending)? {
-            sizes.push((std::fs::metadata(&file)?.len(), file));
+            let found = std::fs::metadata(&file).with_context(|| file.display().to_string())?;
+            sizes.push((found.len(), file));
         }
         sizes.sort();
         if let (Some((least, small)), Some((most, large))) = (sizes.first(), sizes.last())

@@ -19,6 +19,7 @@ use isostudy_design::machine::CpuProfile;
 use isostudy_design::record::{BenchSample, Purpose};
 use isostudy_design::{ConfigurationId, Study};
 use isostudy_extract::{Execution, Extractor};
+use isostudy_foreign::Folder;
 use isostudy_report::Panel;
 use std::path::{Path, PathBuf};
 
@@ -151,7 +152,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 
 /// The spacing that a configuration's budget leads to, looked for in a folder that vanishes.
 fn found_spacings(study: &Study, id: &ConfigurationId, threads: u32) -> Result<Spacings> {
-    let folder = tempfile::tempdir()?;
+    let folder = Folder::new().context("cannot make a temporary folder")?;
     let pipeline = Pipeline::new(study, Store::open(folder.path(), false)?, threads as usize);
     pipeline.budgets(&[Purpose::Benchmark], std::slice::from_ref(id))?;
     Ok(pipeline.found_spacings())
