@@ -66,9 +66,10 @@ fn names_cannot_forge_a_line_or_a_page() {
     let folder = Folder::new();
     folder.succeed(&["new", "my"]);
     let text = folder.read("my/study.toml");
-    let name =
-        text.lines().find(|line| line.starts_with("name = ")).expect("an object has a name").to_owned();
-    folder.write("my/study.toml", text.replacen(&name, r#"name = "a\r\u001b[2Kb\u202ec\nd""#, 1));
+    let (before, objects) = text.split_once("[[objects]]").expect("a study has objects");
+    let name = objects.lines().find(|line| line.starts_with("name = ")).expect("an object has a name");
+    let objects = objects.replacen(name, r#"name = "a\r\u001b[2Kb\u202ec\nd""#, 1);
+    folder.write("my/study.toml", format!("{before}[[objects]]{objects}"));
     let valid = folder.succeed(&["validate", "my/study.toml"]);
     assert!(valid.stdout.contains("a\\u000d\\u001b[2Kb\\u202ec\\u000ad"), "{}", valid.stdout);
     assert_shows_nothing_forged(&valid.stdout);

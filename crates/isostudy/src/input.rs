@@ -26,7 +26,12 @@ pub(crate) fn regular(path: &Path) -> Result<()> {
 /// # Errors
 /// If it is none, cannot be opened, or is larger than any that is read. The path is named.
 pub(crate) fn open(path: &Path) -> Result<impl Read + use<>> {
-    Ok(isostudy_foreign::open(path)?.take(LARGEST_BYTES))
+    let file = isostudy_foreign::open(path)?;
+    if file.metadata().is_ok_and(|found| found.len() > LARGEST_BYTES) {
+        bail!("{}: larger than {LARGEST_BYTES} bytes, the limit for such a file", path.display());
+    }
+    // It may grow while it is read.
+    Ok(file.take(LARGEST_BYTES))
 }
 
 /// What a file holds.

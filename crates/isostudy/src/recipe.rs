@@ -215,6 +215,13 @@ pub(crate) fn check(study: &Study) -> Result<()> {
                             path.display()
                         );
                     }
+                    if std::fs::metadata(path).is_ok_and(|found| found.len() > LARGEST_BYTES) {
+                        bail!(
+                            "{}.files.{object} names {}: larger than {LARGEST_BYTES} bytes, the limit for a mesh",
+                            key(study, method.id),
+                            path.display()
+                        );
+                    }
                 }
             }
         }

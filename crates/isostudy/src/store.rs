@@ -18,6 +18,8 @@ use std::time::UNIX_EPOCH;
 
 const STAMPS: &str = ".stages";
 const PARTIAL: &str = ".partial";
+const LOCK_TRIES: u32 = 20;
+const LOCK_PAUSE: std::time::Duration = std::time::Duration::from_millis(10);
 
 /// A folder of results.
 pub(crate) struct Store {
@@ -293,10 +295,14 @@ fn lock(path: &Path) -> Result<Option<File>> {
         }
         Err(error) => return Err(error).with_context(|| format!("cannot make {}", path.display())),
     };
-    match file.try_lock() {
-        Ok(()) => Ok(Some(file)),
-        Err(_) => bail!("{} says that another run is at work there", path.display()),
+    // A child that is being started has our files for a moment, and a lock that was just given up with them.
+    for _ in 0..LOCK_TRIES {
+        if file.try_lock().is_ok() {
+            return Ok(Some(file));
+        }
+        std::thread::sleep(LOCK_PAUSE);
     }
+    bail!("{} says that another run is at work there", path.display())
 }
 
 /// SHA-256 in hexadecimal.

@@ -150,8 +150,8 @@ fn answer(arguments: &Arguments, run: &AbRun) -> Result<Outcome> {
 
 /// A file, wherever it is started from.
 fn program(path: &Path) -> Result<PathBuf> {
+    input::regular(path)?;
     let found = std::fs::canonicalize(path);
     let found = found.with_context(|| format!("cannot find the program {}", path.display()))?;
-    input::regular(&found)?;
     Ok(found)
 }
