@@ -81,7 +81,7 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let at_a = baseline::named(&arguments.a, &arguments.b).map_or_else(|| run_at(&arguments.a), Ok)?;
     let both = [at_a, run_at(&arguments.b)?];
-    both.iter().try_for_each(|path| input::regular(path))?;
+    both.iter().try_for_each(|path| input::open(path).map(drop))?;
     let [a, b] = both.map(|path| run_file::read(&path));
     let (a, b) = (a?, b?);
     let comparison = compared(&a, &b, arguments)?;
