@@ -36,8 +36,9 @@ ONLY = {
 KNOWS = {
     "isostudy-mesh": set(),
     "isostudy-cells": set(),
-    "isostudy-volume": set(),
-    "isostudy-design": set(),
+    "isostudy-foreign": set(),
+    "isostudy-volume": {"isostudy-foreign"},
+    "isostudy-design": {"isostudy-foreign"},
     "isostudy-table": set(),
     "isostudy-statistics": set(),
     "isostudy-trilinear": {"isostudy-mesh"},

@@ -1,7 +1,7 @@
 //! A study may compare any method on any object: everything at once, from a study file to a report whose tests are about methods; and
 //! what is said where something is wrong with it.
 
-use crate::command::Folder;
+use crate::command::{Folder, Run};
 use crate::http;
 use crate::server::{Server, TOKEN, answer, begin};
 use std::collections::BTreeSet;
@@ -149,9 +149,10 @@ fn any_method_on_any_object_from_file_to_report() {
     // A study file from a stranger is code.
     let refused = folder.run(&["study", "study.toml", "--out", "out"]);
     assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    let quoted: Vec<String> = program.split(' ').map(|word| format!("{word:?}")).collect();
     assert!(
         refused.stderr.contains("--allow-programs")
-            && refused.stderr.contains(&format!("program: {program}")),
+            && refused.stderr.contains(&format!("program: {}", quoted.join(" "))),
         "{}",
         refused.stderr
     );
@@ -516,7 +517,9 @@ fn a_program_that_fails_while_it_is_timed_is_left_out_of_the_times() {
     assert!(folder.path("out/meshes/stimulus/fo_program.ply").exists());
 
     let inspect = ["inspect", "vo_program", "--study", "study.toml", "--iterations", "2", "--json"];
-    let refused = folder.run(&inspect);
+    // Somebody else has allowed nothing yet.
+    let mut other = folder.isostudy();
+    let refused = Run::of(other.args(inspect).env("XDG_STATE_HOME", folder.path("of-another")));
     assert_eq!(refused.code, Some(2));
     assert!(refused.stderr.contains("--allow-programs"), "{}", refused.stderr);
     let panel: serde_json::Value =

@@ -11,6 +11,7 @@ mod distance;
 mod edges;
 mod fixture;
 mod football;
+mod foreign;
 mod gate;
 mod http;
 mod isovalues;

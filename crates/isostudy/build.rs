@@ -7,12 +7,13 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const CRATES: [&str; 20] = [
+const CRATES: [&str; 21] = [
     "mesh",
     "cells",
     "design",
     "responses",
     "field",
+    "foreign",
     "expression",
     "volume",
     "extract",
@@ -33,7 +34,7 @@ const CRATES: [&str; 20] = [
 /// The pages that people read: a digest of their own.
 const PAGES: &str = "pipeline/pages";
 /// Modules of the command that change no result: what is asked, what is said meanwhile, and how it ended.
-const ASIDE: [&str; 5] = ["main", "commands", "help", "outcome", "terminal"];
+const ASIDE: [&str; 7] = ["main", "commands", "consent", "help", "outcome", "paths", "terminal"];
 
 fn main() {
     let root = Path::new(&std::env::var("CARGO_MANIFEST_DIR").expect("cargo says where the package is"))

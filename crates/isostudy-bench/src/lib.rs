@@ -67,7 +67,7 @@ pub use machine::{FEATURES, read_machine};
 pub use pin::pin;
 pub use plan::{Invocation, Plan, Round, Turn, order};
 pub use planted::{PLANTED, Planted};
-pub use process::ProcessExecutor;
+pub use process::{Allowance, ProcessExecutor};
 pub use profile::{MEMORY_ALLOWANCE, ProfileRow, compare_profile, differences};
 pub use reference::Reference;
 pub use run::{Executor, Measurement, PeakBytes, check_journal, run, run_until};

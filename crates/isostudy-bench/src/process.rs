@@ -6,23 +6,45 @@ use crate::linux;
 use crate::load::CpuTimes;
 use crate::run::{Executor, Measurement, PeakBytes};
 use crate::worker::{Reply, Request};
-use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use std::thread::JoinHandle;
+use isostudy_foreign::{Child, Heard, Limits, Stopped, Told, shown_in_a_line};
+use std::process::Command;
 use std::time::Duration;
 
 /// Long enough for a share of the CPU time to be taken, short enough not to be noticed.
 const IDLE: Duration = Duration::from_millis(500);
+/// An answer is a few hundred bytes, or what a program said that failed.
+const LINE_LIMIT_BYTES: usize = 1 << 20;
+/// How long a process may take to end once it is no longer asked.
+const PARTING: Duration = Duration::from_secs(10);
+/// How much of a line is quoted.
+const QUOTED: usize = 100;
+
+/// What a measuring process may use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Allowance {
+    /// For each answer, and to be ready.
+    pub time: Duration,
+    /// Resident memory of the process and all that it starts; `None` for no limit.
+    pub memory_bytes: Option<u64>,
+}
+
+impl Default for Allowance {
+    /// A day for each answer. One's own program may measure something large.
+    fn default() -> Self {
+        Self { time: Duration::from_secs(86_400), memory_bytes: None }
+    }
+}
 
 /// Starts a process for every invocation and every measurement of memory, and asks it. The process ends when it is no longer
-/// asked, also if this one is killed.
+/// asked, also if this one is killed. It is killed if it does not, or does not keep to its [`Allowance`].
 pub struct ProcessExecutor<'a> {
     /// The command that ends up in [`serve`](crate::serve).
     command: &'a dyn Fn() -> Command,
     /// Whether a configuration may fail without ending the run.
     may_fail: &'a dyn Fn(usize) -> bool,
     /// Told what a process says on standard error; none leaves it this process's own.
-    tell: Option<fn(&str)>,
+    tell: Option<Told>,
+    allowance: Allowance,
     worker: Option<Worker>,
     pinned: Option<Vec<u32>>,
 }
@@ -30,7 +52,14 @@ pub struct ProcessExecutor<'a> {
 impl<'a> ProcessExecutor<'a> {
     /// An executor that asks what this command starts. Any failure ends its run.
     pub fn new(command: &'a dyn Fn() -> Command) -> Self {
-        Self { command, may_fail: &|_| false, tell: None, worker: None, pinned: None }
+        Self {
+            command,
+            may_fail: &|_| false,
+            tell: None,
+            allowance: Allowance::default(),
+            worker: None,
+            pinned: None,
+        }
     }
 
     /// The same, but configurations of which `may_fail` says so, by index, are left out once the measuring process answers that
@@ -40,15 +69,21 @@ impl<'a> ProcessExecutor<'a> {
         Self { may_fail, ..self }
     }
 
-    /// The same, but `tell` is given each line that a process says on standard error, by a thread that waits for it. All of a process's
-    /// lines are told before the next one begins.
+    /// The same, but a process may use no more than this.
     #[must_use]
-    pub fn telling(self, tell: fn(&str)) -> Self {
+    pub fn within(self, allowance: Allowance) -> Self {
+        Self { allowance, ..self }
+    }
+
+    /// The same, but `tell` is given each line that a process says on standard error, by a thread that waits for it. All of a process's
+    /// lines are told before the next one begins; of a process that says very many, the first.
+    #[must_use]
+    pub fn telling(self, tell: Told) -> Self {
         Self { tell: Some(tell), ..self }
     }
 
     fn start(&self) -> Result<(Worker, Option<Vec<u32>>), BenchError> {
-        Worker::start((self.command)(), self.tell)
+        Worker::start((self.command)(), self.tell, self.allowance)
     }
 }
 
@@ -111,67 +146,70 @@ impl Executor for ProcessExecutor<'_> {
 
 struct Worker {
     child: Child,
-    requests: Option<ChildStdin>,
-    replies: BufReader<ChildStdout>,
-    listener: Option<JoinHandle<()>>,
+    allowance: Allowance,
 }
 
 impl Worker {
-    fn start(mut command: Command, tell: Option<fn(&str)>) -> Result<(Self, Option<Vec<u32>>), BenchError> {
-        command.stdin(Stdio::piped()).stdout(Stdio::piped());
-        if tell.is_some() {
-            command.stderr(Stdio::piped());
-        }
-        let mut child =
-            command.spawn().map_err(|error| BenchError::Process(format!("cannot be started: {error}")))?;
-        let requests = child.stdin.take();
-        let replies = BufReader::new(child.stdout.take().expect("its output is a pipe"));
-        let listener = tell
-            .zip(child.stderr.take())
-            .map(|(tell, errors)| std::thread::spawn(move || pass_on(errors, tell)));
-        let mut worker = Self { child, requests, replies, listener };
+    fn start(
+        mut command: Command,
+        tell: Option<Told>,
+        allowance: Allowance,
+    ) -> Result<(Self, Option<Vec<u32>>), BenchError> {
+        let limits = Limits { line_bytes: LINE_LIMIT_BYTES, memory_bytes: allowance.memory_bytes };
+        let child = Child::start(&mut command, limits, tell)
+            .map_err(|error| BenchError::Process(format!("cannot be started: {error}")))?;
+        let mut worker = Self { child, allowance };
         let pinned = worker.reply()?.ready()?;
         Ok((worker, pinned))
     }
 
     fn ask(&mut self, request: Request) -> Result<Reply, BenchError> {
+        if let Some(Heard::Line(line, _) | Heard::TooLong(line)) = self.child.unasked() {
+            self.child.kill();
+            let said = format!("said `{}` without being asked", quoted(&line));
+            return Err(BenchError::Process(said));
+        }
         let line = serde_json::to_string(&request).expect("plain data serialises") + "\n";
-        let requests = self.requests.as_mut().expect("open until the worker is dropped");
         // A process that has ended says more by how it ended than by the pipe that broke.
-        let _ = requests.write_all(line.as_bytes()).and_then(|()| requests.flush());
+        self.child.send(line.into_bytes());
         self.reply()
     }
 
     fn reply(&mut self) -> Result<Reply, BenchError> {
-        let mut line = String::new();
-        match self.replies.read_line(&mut line) {
-            Ok(0) => {
-                let status =
-                    self.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
-                Err(BenchError::Process(format!("ended before it answered ({status})")))
+        let Allowance { time, .. } = self.allowance;
+        let said = match self.child.listen(time) {
+            Ok((line, _)) => match serde_json::from_slice(&line) {
+                Ok(reply) => return Ok(reply),
+                Err(error) => format!("said `{}`: {error}", quoted(&line)),
+            },
+            Err(Stopped::Ended(end, _)) => format!("ended before it answered: it {end}"),
+            Err(Stopped::TimeLimit) => {
+                format!("took longer than {} s to answer, its time limit", time.as_secs_f64())
             }
-            Ok(_) => serde_json::from_str(&line).map_err(|error| BenchError::Process(error.to_string())),
-            Err(error) => Err(BenchError::Process(error.to_string())),
-        }
+            Err(Stopped::MemoryLimit { bytes, limit }) => {
+                format!("took {bytes} bytes of memory; its limit is {limit}")
+            }
+            Err(Stopped::TooLong(start)) => {
+                format!("said a line of more than {LINE_LIMIT_BYTES} bytes: `{}`", quoted(&start))
+            }
+        };
+        self.child.kill();
+        Err(BenchError::Process(said))
     }
+}
+
+fn quoted(line: &[u8]) -> String {
+    let start = String::from_utf8_lossy(&line[..line.len().min(QUOTED)]);
+    format!("{}{}", shown_in_a_line(&start), if line.len() > QUOTED { "..." } else { "" })
 }
 
 impl Drop for Worker {
-    /// Lets it end and waits for it, so that it is not at work while the next one measures.
+    /// Lets it end and waits for it, so that it is not at work while the next one measures, and for its last words. One that does not
+    /// end is killed.
     fn drop(&mut self) {
-        self.requests = None;
-        let _ = self.child.wait();
-        let _ = self.listener.take().map(JoinHandle::join);
-    }
-}
-
-/// Tells each line until there are no more. What is no text is told as far as it is.
-fn pass_on(errors: impl Read, tell: fn(&str)) {
-    let mut errors = BufReader::new(errors);
-    let mut line = Vec::new();
-    while let Ok(1..) = errors.read_until(b'\n', &mut line) {
-        tell(String::from_utf8_lossy(&line).trim_end_matches(['\n', '\r']));
-        line.clear();
+        let _ = self.child.wait(PARTING);
+        self.child.kill();
+        self.child.last_words();
     }
 }
 
@@ -228,5 +266,50 @@ mod tests {
         let mut executor = ProcessExecutor::new(&answering);
         executor.begin().unwrap();
         assert_eq!(executor.execute(0).unwrap_err().to_string(), "no");
+    }
+
+    /// What other programs than ours may do: each is told by name within the limit, and nothing of it stays.
+    #[cfg(unix)]
+    #[test]
+    fn a_process_that_does_not_keep_to_its_limits_is_ended() {
+        let ready = "echo '{\"ready\":null}'; ";
+        let timed = "{\"failed\":\"no\"}";
+        for (script, words) in [
+            ("sleep 1000".to_owned(), "took longer than 1 s"),
+            (format!("trap '' TERM INT; {ready} read line; sleep 1000"), "took longer than 1 s"),
+            (format!("{ready} read line; echo '{timed}'; sleep 1000"), "took longer than 1 s"),
+            (format!("{ready} exec >&-; sleep 1000"), "closed its output without ending"),
+            ("yes | tr -d '\\n'".to_owned(), "a line of more than 1048576 bytes"),
+            ("cat /dev/zero".to_owned(), "a line of more than 1048576 bytes"),
+            ("yes".to_owned(), "said `y`"),
+            (format!("{ready} while :; do echo '{timed}'; done"), "without being asked"),
+            ("yes >&2".to_owned(), "took longer than 1 s"),
+            ("cat /dev/zero >&2".to_owned(), "took longer than 1 s"),
+            ("printf '\\033[2K\\r{}'".to_owned(), "ended before it answered"),
+            ("printf '\\033[2Kforged\\n'".to_owned(), "said `\\u001b[2Kforged`"),
+            (format!("{ready} kill -9 $$"), "signal 9"),
+            (
+                format!("{ready} head -c 300000000 /dev/zero | tail; sleep 1000"),
+                "bytes of memory; its limit is",
+            ),
+        ] {
+            let command = || {
+                let mut command = Command::new("sh");
+                command.args(["-c", &script]);
+                command
+            };
+            let allowance = Allowance { time: Duration::from_secs(1), memory_bytes: Some(100 << 20) };
+            let mut executor = ProcessExecutor::new(&command).within(allowance).telling(|_| ());
+            // The second question finds out who says more than it is asked.
+            let mut said = vec![executor.begin().err()];
+            for _ in 0..2 {
+                if said[0].is_none() {
+                    said.push(executor.execute(0).err());
+                }
+            }
+            let said: Vec<String> = said.into_iter().flatten().map(|error| error.to_string()).collect();
+            let is_told = said.iter().any(|error| error.contains(words));
+            assert!(is_told, "{script}: {said:?}");
+        }
     }
 }

@@ -24,8 +24,7 @@ impl Study {
     /// # Errors
     /// The first thing that is wrong, naming the file, the key and what is allowed. Nothing has been written then.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ConfigError::Read { file: path.into(), source })?;
+        let text = crate::read::text(path)?;
         Self::parse(&text, path)
     }
 

@@ -45,8 +45,7 @@ impl CpuProfile {
     /// # Errors
     /// If the file cannot be read, a key is unknown or a value is not of its kind, naming file and key.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ConfigError::Read { file: path.into(), source })?;
+        let text = crate::read::text(path)?;
         Self::parse(&text, path)
     }
 

@@ -65,6 +65,7 @@ fn every_table_is_there_and_scripts_find_their_columns() {
             "prediction_joint",
             "prediction_objects",
             "prediction_correlations",
+            "likings",
             "quality",
             "topology",
             "accuracy",

@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use isostudy_foreign::{End, shown_in_a_line};
 use thiserror::Error;
 
 /// What went wrong, with which program, and what it said on its standard error.
@@ -20,7 +21,12 @@ pub struct ProgramError {
 }
 
 fn quoted(stderr: &str) -> String {
-    if stderr.is_empty() { String::new() } else { format!("; its standard error ends:\n{stderr}") }
+    if stderr.is_empty() {
+        return String::new();
+    }
+    // A bar before each line, so that none of them passes for one of ours.
+    let lines: Vec<String> = stderr.lines().map(|line| format!("  | {}", shown_in_a_line(line))).collect();
+    format!("; its standard error ends:\n{}", lines.join("\n"))
 }
 
 /// When it went wrong.
@@ -40,27 +46,6 @@ impl fmt::Display for Phase {
             Self::Start => f.write_str("before it was ready"),
             Self::Request(id) => write!(f, "at request {id}"),
             Self::Finish => f.write_str("after its input had ended"),
-        }
-    }
-}
-
-/// How a process ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
-    /// With this code.
-    Code(i32),
-    /// By this signal.
-    Signal(i32),
-    /// Not at all: it closed its output and went on.
-    NotYet,
-}
-
-impl fmt::Display for End {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Code(code) => write!(f, "ended with code {code}"),
-            Self::Signal(signal) => write!(f, "was ended by signal {signal}"),
-            Self::NotYet => f.write_str("closed its output without ending"),
         }
     }
 }
@@ -108,6 +93,12 @@ pub enum Problem {
     /// A memory limit where memory cannot be watched.
     #[error("its memory limit cannot be kept: there is no /proc here to watch it by; leave the limit out")]
     NotWatched,
+    /// There is no sandbox to run it in.
+    #[error("cannot be run in a sandbox: {reason}")]
+    NoSandbox {
+        /// Why not.
+        reason: String,
+    },
     /// The request cannot be made.
     #[error("{key}: {reason}")]
     Request {

@@ -13,6 +13,7 @@
 //!     base: "configs".into(),
 //!     time_limit: Duration::from_secs(60),
 //!     memory_limit_bytes: Some(4 << 30),
+//!     sandbox: false,
 //! };
 //! program.check()?;
 //! let mut worker = Worker::start(&program)?;
@@ -49,27 +50,27 @@
 //!
 //! # Not guaranteed
 //!
-//! - This is no sandbox. A program may do whatever its user may do; only run what you trust.
-//! - A process that leaves the group (`setsid`) is neither counted nor ended.
+//! - Without [`Program::sandbox`] a program may do whatever its user may do; only run what you trust. With it, a program may still read
+//!   what its user may read.
+//! - A process that leaves group and session, and removes the variable `ISOSTUDY_CHILD` from its environment, is neither counted nor
+//!   ended. In a sandbox it is.
 //! - Memory is looked at every 50 ms, and a process that the program starts is noticed within about a second (later where
 //!   there are thousands of processes). A limit may be overstepped meanwhile. It is watched on Linux only.
-//! - If the caller's process is killed, its programs meet the end of their input. One that is extracting ends after that,
-//!   and the folders stay.
+//! - If the caller's process is killed, the kernel kills the programs, where the caller began with [`isostudy_foreign::wrapper`].
+//!   Elsewhere they meet the end of their input. What programs started stays, unless they are in a sandbox.
 //! - Nothing is said about the mesh's topology or quality, or about which way its triangles face.
 
 mod answer;
 mod error;
-mod group;
-mod lines;
 mod mesh_file;
 mod program;
 mod request;
-mod tail;
+mod sandbox;
 mod worker;
 
 pub use answer::{Answer, Ready};
-pub use error::{End, Phase, Problem, ProgramError};
-pub use group::Memory;
+pub use error::{Phase, Problem, ProgramError};
+pub use isostudy_foreign::{End, Memory};
 pub use program::Program;
 pub use request::{Request, Samples, write_samples};
 pub use worker::{LINE_LIMIT_BYTES, Worker};

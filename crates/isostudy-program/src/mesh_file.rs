@@ -1,6 +1,7 @@
 //! The mesh that a program wrote: read, and checked against what it told and where its samples lie.
 
-use std::fs::{self, File};
+use std::fs;
+use std::io::Read;
 use std::path::Path;
 
 use isostudy_mesh::{MeshFormat, TriangleMesh};
@@ -25,19 +26,21 @@ pub(crate) fn read(
     limit_bytes: Option<u64>,
 ) -> Result<TriangleMesh, Problem> {
     let wrong = |reason: String| Problem::Mesh { path: path.to_owned(), reason };
-    let data = match fs::symlink_metadata(path) {
-        Ok(data) if data.is_file() => data,
-        // Opening a pipe would wait for ever.
+    // What it wrote is in its folder, and not where a link leads.
+    let limit = limit_bytes.unwrap_or(u64::MAX);
+    let size = match fs::symlink_metadata(path) {
+        Ok(found) if found.is_file() => found.len(),
         Ok(_) => return Err(wrong("not a file".to_owned())),
         Err(error) => {
             return Err(wrong(format!("it told {} triangles and wrote none: {error}", done.triangles)));
         }
     };
-    if let Some(limit) = limit_bytes.filter(|&limit| data.len() > limit) {
-        return Err(wrong(format!("{} bytes, more than its memory limit of {limit}", data.len())));
+    if size > limit {
+        return Err(wrong(format!("{size} bytes, more than its memory limit of {limit}")));
     }
     let format = path.extension().and_then(|ending| ending.to_str()).and_then(MeshFormat::from_extension);
-    let file = File::open(path).map_err(Problem::io(path))?;
+    // It may grow while it is read.
+    let file = isostudy_foreign::open(path).map_err(|error| wrong(error.problem.to_string()))?.take(limit);
     let mesh = format.unwrap_or(MeshFormat::Ply).read(file).map_err(|error| wrong(error.to_string()))?;
     check(&mesh, request, done)?;
     Ok(mesh)

@@ -7,7 +7,10 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use isostudy_foreign::shown_in_a_line;
+
 use crate::error::{Problem, ProgramError};
+use crate::sandbox;
 
 /// A program that extracts, as a study names it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,6 +26,8 @@ pub struct Program {
     pub time_limit: Duration,
     /// How much memory the program and all that it starts may have resident; `None` for no limit.
     pub memory_limit_bytes: Option<u64>,
+    /// Whether bubblewrap confines it: no network, nothing to write but its own folder.
+    pub sandbox: bool,
 }
 
 impl Program {
@@ -30,9 +35,18 @@ impl Program {
     ///
     /// # Errors
     /// [`Problem::NoCommand`], [`Problem::NotFound`], [`Problem::NotExecutable`], [`Problem::NoSuchFile`],
-    /// [`Problem::Ambiguous`], [`Problem::NoTime`], [`Problem::NotWatched`].
+    /// [`Problem::Ambiguous`], [`Problem::NoTime`], [`Problem::NotWatched`], [`Problem::NoSandbox`].
     pub fn check(&self) -> Result<(), ProgramError> {
-        self.resolved().map(|_| ()).map_err(|problem| self.error(problem))
+        let sandbox = || if self.sandbox { sandbox::check() } else { Ok(()) };
+        self.resolved().and_then(|_| sandbox()).map_err(|problem| self.error(problem))
+    }
+
+    /// The words that are started: the program as an absolute path, and absolute paths for arguments that are paths.
+    ///
+    /// # Errors
+    /// As [`Program::check`], but for the sandbox.
+    pub fn words(&self) -> Result<Vec<OsString>, ProgramError> {
+        self.resolved().map_err(|problem| self.error(problem))
     }
 
     /// The files that the command names: the program, unless it was found by `PATH`, and arguments that are paths to files.
@@ -67,7 +81,8 @@ impl Program {
     }
 
     pub(crate) fn error(&self, problem: Problem) -> ProgramError {
-        ProgramError { program: self.command.join(" "), problem: Box::new(problem), stderr: String::new() }
+        let program = shown_in_a_line(&self.command.join(" ")).into_owned();
+        ProgramError { program, problem: Box::new(problem), stderr: String::new() }
     }
 }
 

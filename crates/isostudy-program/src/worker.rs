@@ -1,44 +1,34 @@
 //! A running program: started, asked, ended.
 
-use std::io::Write;
 use std::path::Path;
-use std::process::{ChildStdin, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::thread;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
-use tempfile::TempDir;
+use isostudy_foreign::{Child, End, Folder, Heard, Limits, Memory, Stopped};
 
 use crate::answer::{self, Answer, Done, Ready};
-use crate::error::{End, Phase, Problem, ProgramError, shortened};
-use crate::group::{Group, Memory};
-use crate::lines::{Heard, lines};
+use crate::error::{Phase, Problem, ProgramError, shortened};
 use crate::mesh_file;
 use crate::program::Program;
 use crate::request::{Line, Request, Samples, write_samples};
-use crate::tail::Tail;
+use crate::sandbox;
 
 /// The longest line that a program may say, without its end.
 pub const LINE_LIMIT_BYTES: usize = 65_536;
 
-/// How often memory and life are looked at while an answer is awaited.
-const LOOK_EVERY: Duration = Duration::from_millis(50);
 /// How long a program that closed its output may take to end.
 const PARTING: Duration = Duration::from_secs(1);
 
 /// A running program. Dropped, its process group is killed and its folder removed.
 #[derive(Debug)]
 pub struct Worker {
-    // Dropped in this order: nothing of the group may live when the folder goes.
-    group: Group,
-    requests: Option<Sender<Vec<u8>>>,
-    replies: Receiver<Heard>,
-    stderr: Tail,
+    // Dropped in this order: nothing of the child may live when the folder goes.
+    child: Child,
     program: Program,
     ready: Ready,
     last_id: u64,
     running: bool,
-    folder: TempDir,
+    folder: Folder,
 }
 
 impl Worker {
@@ -68,7 +58,7 @@ impl Worker {
 
     /// The number of its first process, for those who account for CPU time.
     pub fn process(&self) -> u32 {
-        self.group.id()
+        self.child.id()
     }
 
     /// Whether it may be asked. After an error that leaves both sides in step (`failed`, a broken mesh, a request that cannot
@@ -79,7 +69,7 @@ impl Worker {
 
     /// The memory of the program and all that it started; `None` where it cannot be seen.
     pub fn memory(&mut self) -> Option<Memory> {
-        self.group.memory(true)
+        self.child.memory(true)
     }
 
     /// Asks for one isosurface and waits for it, with the mesh if there is to be one.
@@ -93,7 +83,7 @@ impl Worker {
         match self.ask(request) {
             Ok(answer) => Ok(answer),
             Err(problem) if problem.is_in_step() => {
-                let stderr = self.stderr.words();
+                let stderr = self.child.words();
                 Err(ProgramError { stderr, ..self.program.error(problem) })
             }
             Err(problem) => Err(self.stop(problem)),
@@ -109,7 +99,7 @@ impl Worker {
         if !self.running {
             return Err(self.program.error(Problem::Stopped));
         }
-        self.requests = None;
+        self.child.close_input();
         let limit = self.program.time_limit;
         match self.listen(Phase::Finish) {
             Ok((line, _)) => Err(self.stop(Problem::Unasked { line: shortened(&line) })),
@@ -126,23 +116,18 @@ impl Worker {
     }
 
     fn spawn(program: &Program) -> Result<Self, Problem> {
-        let words = program.resolved()?;
-        let folder = TempDir::with_prefix("isostudy-").map_err(Problem::io(&std::env::temp_dir()))?;
+        let mut words = program.resolved()?;
+        let folder = Folder::new().map_err(Problem::io(&std::env::temp_dir()))?;
+        if program.sandbox {
+            sandbox::check()?;
+            words = sandbox::confined(words, folder.path());
+        }
         let mut command = Command::new(&words[0]);
         command.args(&words[1..]).current_dir(folder.path()).env("TMPDIR", folder.path());
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut group = Group::spawn(&mut command).map_err(Problem::Start)?;
-        let child = group.child();
-        let (Some(input), Some(output), Some(errors)) =
-            (child.stdin.take(), child.stdout.take(), child.stderr.take())
-        else {
-            unreachable!("all three are pipes")
-        };
+        let limits = Limits { line_bytes: LINE_LIMIT_BYTES, memory_bytes: program.memory_limit_bytes };
+        let child = Child::start(&mut command, limits, None).map_err(Problem::Start)?;
         Ok(Self {
-            group,
-            requests: Some(writer(input)),
-            replies: lines(output, LINE_LIMIT_BYTES),
-            stderr: Tail::of(errors),
+            child,
             program: program.clone(),
             ready: Ready { name: String::new(), version: String::new(), note: None },
             last_id: 0,
@@ -170,7 +155,7 @@ impl Worker {
         if let Some(path) = &mesh {
             mesh_file::clear(path)?;
         }
-        if let Ok(heard) = self.replies.try_recv() {
+        if let Some(heard) = self.child.unasked() {
             return Err(self.unasked(heard));
         }
         self.last_id += 1;
@@ -181,8 +166,8 @@ impl Worker {
             .map_err(|error| Problem::Request { key: "samples, mesh", reason: error.to_string() })?;
         line.push(b'\n');
         let (done, wall) = self.answered(line, id)?;
-        let memory = self.group.memory(true);
-        self.check_memory(memory, Phase::Request(id))?;
+        let memory = self.child.memory(true);
+        self.child.check_memory(memory).map_err(|stopped| self.stopped(stopped, Phase::Request(id)))?;
         if done.triangles == 0 && !request.may_be_empty {
             return Err(Problem::Empty { id });
         }
@@ -194,8 +179,7 @@ impl Worker {
 
     fn answered(&mut self, line: Vec<u8>, id: u64) -> Result<(Done, Duration), Problem> {
         let asked = Instant::now();
-        // Without a receiver the program is gone, which is what listening finds out.
-        let _ = self.requests.as_ref().map(|requests| requests.send(line));
+        self.child.send(line);
         let (line, at) = self.listen(Phase::Request(id))?;
         let Some(wall) = at.checked_duration_since(asked) else {
             return Err(Problem::Unasked { line: shortened(&line) });
@@ -205,75 +189,39 @@ impl Worker {
 
     /// The next line, and when it came.
     fn listen(&mut self, phase: Phase) -> Result<(Vec<u8>, Instant), Problem> {
-        let limit = self.program.time_limit;
-        let begin = Instant::now();
-        let mut had_ended = false;
-        loop {
-            let left = limit.saturating_sub(begin.elapsed());
-            match self.replies.recv_timeout(left.min(LOOK_EVERY)) {
-                Ok(Heard::Line(line, at)) => return Ok((line, at)),
-                Ok(Heard::TooLong(start)) => {
-                    let start = shortened(&start[..start.len().min(100)]);
-                    return Err(Problem::LineTooLong { phase, limit: LINE_LIMIT_BYTES, start });
-                }
-                Ok(Heard::End(rest)) => return Err(self.ended(phase, &rest)),
-                Err(RecvTimeoutError::Disconnected) => return Err(self.ended(phase, &[])),
-                // It ended, and something that it started holds its output open.
-                Err(RecvTimeoutError::Timeout) if had_ended => return Err(self.ended(phase, &[])),
-                Err(RecvTimeoutError::Timeout) => {}
-            }
-            had_ended = self.group.has_ended();
-            if !had_ended {
-                let memory = self.group.memory(false);
-                self.check_memory(memory, phase)?;
-            }
-            // One that has just ended is given one more look, for its last line and its code.
-            let extra = if had_ended { LOOK_EVERY } else { Duration::ZERO };
-            if begin.elapsed().saturating_sub(extra) >= limit {
-                return Err(Problem::TimeLimit { phase, limit });
-            }
-        }
+        let heard = self.child.listen(self.program.time_limit);
+        heard.map_err(|stopped| self.stopped(stopped, phase))
     }
 
-    fn check_memory(&self, memory: Option<Memory>, phase: Phase) -> Result<(), Problem> {
-        match (memory, self.program.memory_limit_bytes) {
-            (Some(Memory { peak_bytes: bytes, .. }), Some(limit)) if bytes > limit => {
-                Err(Problem::MemoryLimit { phase, bytes, limit })
+    fn stopped(&self, stopped: Stopped, phase: Phase) -> Problem {
+        match stopped {
+            Stopped::TimeLimit => Problem::TimeLimit { phase, limit: self.program.time_limit },
+            Stopped::MemoryLimit { bytes, limit } => Problem::MemoryLimit { phase, bytes, limit },
+            Stopped::TooLong(start) => {
+                let start = shortened(&start[..start.len().min(100)]);
+                Problem::LineTooLong { phase, limit: LINE_LIMIT_BYTES, start }
             }
-            _ => Ok(()),
+            Stopped::Ended(end, rest) => Problem::Ended { phase, end, rest: shortened(&rest) },
         }
-    }
-
-    fn ended(&mut self, phase: Phase, rest: &[u8]) -> Problem {
-        self.group.ends_within(PARTING);
-        Problem::Ended { phase, end: self.group.kill(), rest: shortened(rest) }
     }
 
     fn unasked(&mut self, heard: Heard) -> Problem {
         match heard {
             Heard::Line(line, _) | Heard::TooLong(line) => Problem::Unasked { line: shortened(&line) },
-            Heard::End(rest) => self.ended(Phase::Request(self.last_id + 1), &rest),
+            Heard::End(rest) => {
+                let phase = Phase::Request(self.last_id + 1);
+                match self.child.listen(PARTING) {
+                    Err(Stopped::Ended(end, _)) => Problem::Ended { phase, end, rest: shortened(&rest) },
+                    Err(stopped) => self.stopped(stopped, phase),
+                    Ok((line, _)) => Problem::Unasked { line: shortened(&line) },
+                }
+            }
         }
     }
 
     fn stop(&mut self, problem: Problem) -> ProgramError {
         self.running = false;
-        self.requests = None;
-        self.group.kill();
-        ProgramError { stderr: self.stderr.last_words(), ..self.program.error(problem) }
+        self.child.kill();
+        ProgramError { stderr: self.child.last_words(), ..self.program.error(problem) }
     }
-}
-
-/// Writes lines as they come: a program that does not read its input must not keep us waiting. The pipe is closed when the
-/// sender is dropped or the program is gone.
-fn writer(mut input: ChildStdin) -> Sender<Vec<u8>> {
-    let (sender, lines) = channel::<Vec<u8>>();
-    thread::spawn(move || {
-        for line in lines {
-            if input.write_all(&line).is_err() {
-                return;
-            }
-        }
-    });
-    sender
 }

@@ -21,6 +21,7 @@ use crate::plan::Plan;
 use crate::report::Report;
 use crate::sides::SidesSource;
 use crate::value::Responses;
+use isostudy_foreign::FileProblem;
 use std::path::Path;
 
 /// Largest file that is read, in bytes.
@@ -44,12 +45,14 @@ pub struct Reading {
 /// both.
 pub fn read(path: &Path, plan: Option<&Plan>, mapping: &Mapping) -> Result<Reading, ReadError> {
     let failed = |source| ReadError::File { file: path.into(), source };
-    let bytes = std::fs::metadata(path).map_err(failed)?.len();
-    if bytes > LARGEST_FILE {
-        let fault = Box::new(Fault::TooLarge { bytes, limit: LARGEST_FILE });
-        return Err(ReadError::Content { file: path.into(), fault });
-    }
-    parse(&std::fs::read(path).map_err(failed)?, path, plan, mapping)
+    let bytes = isostudy_foreign::bytes(path, LARGEST_FILE).map_err(|error| match error.problem {
+        FileProblem::TooLarge { limit } => {
+            let bytes = std::fs::metadata(path).map_or(limit, |found| found.len());
+            ReadError::Content { file: path.into(), fault: Box::new(Fault::TooLarge { bytes, limit }) }
+        }
+        _ => failed(error.into()),
+    })?;
+    parse(&bytes, path, plan, mapping)
 }
 
 /// As [`read`], from the file's content; `path` names it in messages.

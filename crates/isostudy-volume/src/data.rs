@@ -6,6 +6,7 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
+use isostudy_foreign::FileProblem;
 use serde::Deserialize;
 
 use crate::error::{Problem, shortened};
@@ -119,10 +120,11 @@ pub(crate) struct Layout {
 
 /// Opens a regular file. A pipe could be waited for, and a device read, for ever.
 pub(crate) fn open(path: &Path) -> Result<BufReader<File>, Problem> {
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(Problem::NotAFile);
-    }
-    Ok(BufReader::with_capacity(1 << 16, File::open(path)?))
+    let file = isostudy_foreign::open(path).map_err(|error| match error.problem {
+        FileProblem::NotAFile(_) => Problem::NotAFile,
+        _ => Problem::Io(error.into()),
+    })?;
+    Ok(BufReader::with_capacity(1 << 16, file))
 }
 
 /// Reads the samples, from the data's first byte.

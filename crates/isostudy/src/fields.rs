@@ -1,5 +1,6 @@
 //! The scalar fields of a study's objects, from what the study file says of them.
 
+use crate::input;
 use crate::memory::Limit;
 use crate::mesh_file;
 use crate::source::{self, Options};
@@ -237,9 +238,8 @@ fn present_source(
 pub(crate) fn files(study: &Study, number: usize) -> Result<Vec<(String, String)>> {
     let object = &study.file.objects[number];
     let named = |written: &str, path: &Path| -> Result<(String, String)> {
-        let bytes = std::fs::read(path).with_context(|| {
-            format!("{}: {}", place(study, &format!("objects[{number}].field.file")), path.display())
-        })?;
+        let bytes =
+            input::bytes(path).with_context(|| place(study, &format!("objects[{number}].field.file")))?;
         Ok((written.to_owned(), sha256(&bytes)))
     };
     match &object.field {
@@ -347,7 +347,7 @@ fn has_both_sides(made: &ObjectField, object: &ObjectSection) -> bool {
 }
 
 fn read_checked(source: &MeshSourceSection, path: &Path) -> Result<Vec<u8>> {
-    let bytes = std::fs::read(path)?;
+    let bytes = input::bytes(path)?;
     let found = sha256(&bytes);
     match &source.sha256 {
         Some(wanted) if found != wanted.to_lowercase() => {

@@ -1,37 +1,56 @@
-//! Files that are named to be read. A device or a pipe may never end, or never begin.
+//! Files that are named to be read, each through `isostudy_foreign`, up to a limit.
 
 use crate::recipe::recipe;
 use anyhow::{Context, Result, bail};
 use isostudy_design::Study;
 use isostudy_design::record::Purpose;
+use std::io::Read;
 use std::path::{Path, PathBuf};
+
+/// The largest file that is read whole: a mesh or a program.
+const LARGEST_BYTES: u64 = 4 << 30;
+/// The largest that is read as text or JSON by hand-written readers: tables and downloads.
+const LARGEST_TEXT_BYTES: u64 = 64 << 20;
 
 /// What is there must be a file; that it is not there at all its reader says.
 ///
 /// # Errors
-/// If it is a folder, a device or a pipe. The path is named.
+/// If it is something else, is too large, or cannot be opened. The path is named.
 pub(crate) fn regular(path: &Path) -> Result<()> {
-    check(path).with_context(|| path.display().to_string())
+    if path.symlink_metadata().is_ok() {
+        open(path)?;
+    }
+    Ok(())
 }
 
-/// The same for a reader that names the path itself.
+/// A file to read a mesh from.
 ///
 /// # Errors
-/// If it is a folder, a device or a pipe.
-pub(crate) fn check(path: &Path) -> Result<()> {
-    match std::fs::metadata(path) {
-        Ok(found) if !found.is_file() => bail!("not a file"),
-        _ => Ok(()),
+/// If it is none, cannot be opened, or is larger than any that is read. The path is named.
+pub(crate) fn open(path: &Path) -> Result<impl Read + use<>> {
+    let file = isostudy_foreign::open(path)?;
+    if file.metadata().is_ok_and(|found| found.len() > LARGEST_BYTES) {
+        bail!("{}: larger than {LARGEST_BYTES} bytes, the limit for such a file", path.display());
     }
+    // It may grow while it is read.
+    Ok(file.take(LARGEST_BYTES))
 }
 
 /// What a file holds.
 ///
 /// # Errors
-/// If it is no file, or cannot be read. The path is named.
+/// If it is no file, is too large, or cannot be read. The path is named.
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
-    regular(path)?;
-    std::fs::read(path).with_context(|| path.display().to_string())
+    Ok(isostudy_foreign::bytes(path, LARGEST_BYTES)?)
+}
+
+/// The same of a small text, whose lines have any length.
+///
+/// # Errors
+/// As [`bytes`]; if it is no text.
+pub(crate) fn text(path: &Path) -> Result<String> {
+    let bytes = isostudy_foreign::bytes(path, LARGEST_TEXT_BYTES)?;
+    String::from_utf8(bytes).with_context(|| path.display().to_string())
 }
 
 /// A study, and what it names.

@@ -10,6 +10,7 @@ mod terminal;
 mod answer_files;
 mod chunk_times;
 mod commands;
+mod consent;
 mod error_colours;
 mod fields;
 mod help;
@@ -111,6 +112,10 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    // Before anything else: this process may be there to become a child of another.
+    if let Some(code) = isostudy_foreign::wrapper() {
+        return code;
+    }
     let asked = help::grouped(Cli::command()).get_matches();
     match run(&Cli::from_arg_matches(&asked).unwrap_or_else(|error| error.exit()).command) {
         Ok(outcome) => outcome.exit_code(),
@@ -159,6 +164,9 @@ fn with_causes(error: &anyhow::Error) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod paths;
 
 #[cfg(test)]
 mod tests {

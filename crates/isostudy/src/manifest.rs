@@ -56,7 +56,7 @@ impl<'a> Origin<'a> {
         for method in &study.methods {
             inputs.extend(recipe::files(study, method.id)?);
         }
-        let sha256 = sha256(&std::fs::read(&study.path)?);
+        let sha256 = sha256(&crate::input::bytes(&study.path)?);
         Ok(Self { name: &section.id, sha256, seed: Some(section.seed), inputs })
     }
 }

@@ -3,7 +3,6 @@
 use crate::input;
 use anyhow::{Context, Result};
 use isostudy_mesh::{MeshFormat, TriangleMesh};
-use std::fs::File;
 use std::path::Path;
 
 const READ: [MeshFormat; 3] = [MeshFormat::Obj, MeshFormat::Ply, MeshFormat::Stl];
@@ -37,11 +36,7 @@ fn format_among(path: &Path, known: &[MeshFormat]) -> Result<MeshFormat> {
 /// # Errors
 /// If there is none that can be read. The path is named.
 pub(crate) fn read(path: &Path) -> Result<TriangleMesh> {
-    let read = || -> Result<TriangleMesh> {
-        let format = format_to_read(path)?;
-        input::check(path)?;
-        let file = File::open(path)?;
-        Ok(format.read(file)?)
-    };
-    read().with_context(|| path.display().to_string())
+    let named = || path.display().to_string();
+    let format = format_to_read(path).with_context(named)?;
+    format.read(input::open(path)?).with_context(named)
 }

@@ -11,6 +11,7 @@ use isostudy_program::Program;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// The kinds of recipes that are the study's own, and never the extractor's: a game's library must not be able to start processes.
@@ -47,6 +48,22 @@ pub(crate) enum Recipe {
     /// Meshes that are there: an object's id, and its file.
     Meshes(BTreeMap<String, PathBuf>),
 }
+
+/// Whether this process runs programs in a sandbox. It is asked for once, and every reading of a recipe must say the same.
+static SANDBOX: AtomicBool = AtomicBool::new(false);
+
+/// Runs programs in a sandbox from now on, if so asked.
+pub(crate) fn use_sandbox(is_asked: bool) {
+    SANDBOX.store(is_asked, Ordering::Relaxed);
+}
+
+/// Whether programs run in a sandbox.
+pub(crate) fn uses_sandbox() -> bool {
+    SANDBOX.load(Ordering::Relaxed)
+}
+
+/// The largest program or mesh.
+const LARGEST_BYTES: u64 = 4 << 30;
 
 /// The keys of a program.
 #[derive(Debug, Deserialize)]
@@ -108,6 +125,7 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
                 base: study.resolve("."),
                 time_limit: Duration::from_secs_f64(keys.time_limit_s),
                 memory_limit_bytes: Some((keys.memory_gib * (1u64 << 30) as f64) as u64),
+                sandbox: SANDBOX.load(Ordering::Relaxed),
             }))
         }
         Some(StudyKind::Meshes) => {
@@ -197,6 +215,13 @@ pub(crate) fn check(study: &Study) -> Result<()> {
                             path.display()
                         );
                     }
+                    if std::fs::metadata(path).is_ok_and(|found| found.len() > LARGEST_BYTES) {
+                        bail!(
+                            "{}.files.{object} names {}: larger than {LARGEST_BYTES} bytes, the limit for a mesh",
+                            key(study, method.id),
+                            path.display()
+                        );
+                    }
                 }
             }
         }
@@ -220,20 +245,6 @@ fn check_budget(study: &Study, method: &isostudy_design::Method) -> Result<()> {
         bail!("{key}: meshes that are there have no {what} to match; triangles_of can match them");
     }
     Ok(())
-}
-
-/// The commands that a study would run.
-///
-/// # Errors
-/// As [`recipe`].
-pub(crate) fn commands(study: &Study) -> Result<Vec<String>> {
-    let mut commands = Vec::new();
-    for method in &study.methods {
-        if let Recipe::Program(program) = recipe(study, method.id, Purpose::Benchmark)? {
-            commands.push(format!("{}: {}", method.id, program.command.join(" ")));
-        }
-    }
-    Ok(commands)
 }
 
 /// Whether some method sums its positions up, so that meshes with indexed ones are measured beside.
@@ -270,9 +281,9 @@ pub(crate) fn files(study: &Study, id: MethodId) -> Result<Vec<(String, String)>
         Recipe::Meshes(files) => files.into_values().collect(),
     };
     let folder = study.path.parent().unwrap_or(Path::new(""));
-    let absolute = std::env::current_dir()?.join(folder);
+    let absolute = std::env::current_dir().context("this folder is not there")?.join(folder);
     let digest = |path: &PathBuf| {
-        let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+        let bytes = isostudy_foreign::bytes(path, LARGEST_BYTES)?;
         let short = path.strip_prefix(&absolute).or(path.strip_prefix(folder)).unwrap_or(path);
         Ok((short.display().to_string(), crate::store::sha256(&bytes)))
     };

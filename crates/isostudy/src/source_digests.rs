@@ -5,6 +5,7 @@ const CELLS: &str = env!("ISOSTUDY_SOURCES_CELLS");
 const DESIGN: &str = env!("ISOSTUDY_SOURCES_DESIGN");
 const RESPONSES: &str = env!("ISOSTUDY_SOURCES_RESPONSES");
 const FIELD: &str = env!("ISOSTUDY_SOURCES_FIELD");
+const FOREIGN: &str = env!("ISOSTUDY_SOURCES_FOREIGN");
 const EXTRACT: &str = env!("ISOSTUDY_SOURCES_EXTRACT");
 const TRILINEAR: &str = env!("ISOSTUDY_SOURCES_TRILINEAR");
 const EXPRESSION: &str = env!("ISOSTUDY_SOURCES_EXPRESSION");
@@ -24,11 +25,12 @@ const CLI: &str = env!("ISOSTUDY_SOURCES_CLI");
 
 /// What makes meshes.
 pub(crate) const MESHES: &[&str] =
-    &[MESH, FIELD, EXPRESSION, VOLUME, CELLS, EXTRACT, TRILINEAR, PROGRAM, CLI];
+    &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, CELLS, EXTRACT, TRILINEAR, PROGRAM, CLI];
 /// What makes pictures of meshes.
 pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.
-pub(crate) const TIMINGS: &[&str] = &[MESH, FIELD, EXPRESSION, VOLUME, CELLS, EXTRACT, PROGRAM, BENCH, CLI];
+pub(crate) const TIMINGS: &[&str] =
+    &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, CELLS, EXTRACT, PROGRAM, BENCH, CLI];
 /// What makes tables, figures and the report.
 pub(crate) const TABLES: &[&str] =
     &[DESIGN, RESPONSES, STATISTICS, TABLE, TIMING, INFERENCE, REPORT, PAPER, CLI, PAGE];

@@ -8,6 +8,7 @@
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
@@ -17,6 +18,8 @@ use std::time::UNIX_EPOCH;
 
 const STAMPS: &str = ".stages";
 const PARTIAL: &str = ".partial";
+const LOCK_TRIES: u32 = 20;
+const LOCK_PAUSE: std::time::Duration = std::time::Duration::from_millis(10);
 
 /// A folder of results.
 pub(crate) struct Store {
@@ -142,8 +145,10 @@ impl Store {
     /// Every stage that has a stamp, by name.
     pub(crate) fn stamps(&self) -> Result<Vec<Stamp>> {
         let mut stamps = Vec::new();
-        for entry in fs::read_dir(self.root.join(STAMPS))? {
-            let path = entry?.path();
+        let folder = self.root.join(STAMPS);
+        let unreadable = || format!("cannot read {}", folder.display());
+        for entry in fs::read_dir(&folder).with_context(unreadable)? {
+            let path = entry.with_context(unreadable)?.path();
             if path.extension().is_some_and(|extension| extension == "json") {
                 stamps.extend(fs::read(&path).ok().and_then(|text| serde_json::from_slice(&text).ok()));
             }
@@ -246,8 +251,11 @@ impl Inputs {
 
 impl Writer<'_> {
     /// Writes one file, `path` relative to the store.
+    /// In what people read, what a terminal or a page would obey is escaped: words may come from any file.
     pub(crate) fn write(&mut self, path: &str, bytes: &[u8]) -> Result<()> {
         let full = self.root.join(path);
+        let shown = shown_bytes(path, bytes);
+        let bytes = &*shown;
         write_whole(&full, bytes)?;
         let metadata = fs::metadata(&full).with_context(|| format!("cannot read {}", full.display()))?;
         self.files.push(FileStamp {
@@ -287,10 +295,14 @@ fn lock(path: &Path) -> Result<Option<File>> {
         }
         Err(error) => return Err(error).with_context(|| format!("cannot make {}", path.display())),
     };
-    match file.try_lock() {
-        Ok(()) => Ok(Some(file)),
-        Err(_) => bail!("{} says that another run is at work there", path.display()),
+    // A child that is being started has our files for a moment, and a lock that was just given up with them.
+    for _ in 0..LOCK_TRIES {
+        if file.try_lock().is_ok() {
+            return Ok(Some(file));
+        }
+        std::thread::sleep(LOCK_PAUSE);
     }
+    bail!("{} says that another run is at work there", path.display())
 }
 
 /// SHA-256 in hexadecimal.
@@ -360,7 +372,7 @@ pub(crate) fn remove_if_there(path: &Path) -> Result<()> {
 
 fn sweep(folder: &Path) -> Result<()> {
     for entry in fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))? {
-        let path = entry?.path();
+        let path = entry.with_context(|| format!("cannot read {}", folder.display()))?.path();
         if path.is_dir() {
             sweep(&path)?;
         } else if path.to_string_lossy().ends_with(PARTIAL) {
@@ -368,6 +380,18 @@ fn sweep(folder: &Path) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Endings of texts that people read. JSON and programs of pages are read by programs.
+const READ_BY_PEOPLE: [&str; 6] = ["csv", "html", "md", "svg", "tex", "txt"];
+
+fn shown_bytes<'b>(path: &str, bytes: &'b [u8]) -> Cow<'b, [u8]> {
+    let ending = Path::new(path).extension().unwrap_or_default();
+    let text = Some(bytes).filter(|_| READ_BY_PEOPLE.iter().any(|known| ending == *known));
+    match text.and_then(|bytes| std::str::from_utf8(bytes).ok()).map(isostudy_foreign::shown) {
+        Some(Cow::Owned(text)) => Cow::Owned(text.into_bytes()),
+        _ => Cow::Borrowed(bytes),
+    }
 }
 
 fn modified_ns(metadata: &fs::Metadata) -> u64 {

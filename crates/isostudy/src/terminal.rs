@@ -1,19 +1,26 @@
 //! What is said on standard output and standard error.
 
 use anyhow::Result;
+use isostudy_foreign::shown;
 use std::collections::HashSet;
 use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, PoisonError};
 
-/// As `eprintln!`, which panics where a line cannot be written: on a full disk, or to a reader that has gone.
+/// As `eprintln!`, which panics where a line cannot be written: on a full disk, or to a reader that has gone. What a terminal would obey
+/// is escaped, since words may come from any file.
 macro_rules! tell {
     ($($words:tt)*) => {
-        drop(std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("{}\n", format_args!($($words)*))))
+        $crate::terminal::tell_shown(&format!($($words)*))
     };
 }
 
 // After the macro, which it uses.
 pub(crate) mod progress;
+
+/// What `tell!` says.
+pub(crate) fn tell_shown(words: &str) {
+    let _ = writeln!(std::io::stderr(), "{}", shown(words));
+}
 
 /// Says a line as `tell!` does, unless this process or one that it measures with has said it before.
 pub(crate) fn tell_once(line: &str) {
@@ -24,12 +31,12 @@ pub(crate) fn tell_once(line: &str) {
     }
 }
 
-/// Prints a line on standard output. A reader that has gone away is no error.
+/// Prints a line on standard output, what a terminal would obey escaped. A reader that has gone away is no error.
 ///
 /// # Errors
 /// If standard output cannot be written.
 pub(crate) fn say(line: &str) -> Result<()> {
-    match writeln!(std::io::stdout(), "{line}") {
+    match writeln!(std::io::stdout(), "{}", shown(line)) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
     }

@@ -1,10 +1,23 @@
 //! Pairs as videos, by an `ffmpeg` that the user has: as the paper's are, and for the web, no larger than the pairs.
 
+use crate::input;
 use anyhow::{Context, Result, bail};
+use isostudy_foreign::{Child, End, Folder, Limits, Stopped};
 use isostudy_raster::Animation;
 use isostudy_serve::page::MediaFormat;
-use std::io::{ErrorKind, Write};
-use std::process::{Command, Stdio};
+use std::io::Write;
+use std::process::Command;
+use std::thread;
+use std::time::Duration;
+
+/// How long it may take to say what it is and can.
+const TO_ANSWER: Duration = Duration::from_secs(30);
+/// How long one video may take; a pair of the paper's takes seconds.
+const TO_ENCODE: Duration = Duration::from_secs(3600);
+/// How much it may say of what it can.
+const LIST_BYTES: usize = 1 << 20;
+/// The code of what cannot be started, as shells have it.
+const NOT_STARTED: i32 = 127;
 
 /// Constant rate factors for the web, best first. At the first nothing is to be seen; at the last facets begin to blur.
 pub(crate) const QUALITIES: [u32; 7] = [16, 18, 20, 22, 24, 27, 30];
@@ -34,30 +47,46 @@ const ARGUMENTS: &[&str] = &[
     "+bitexact",
 ];
 
+fn ffmpeg(arguments: &[&str]) -> std::io::Result<Child> {
+    let limits = Limits { line_bytes: 1 << 16, memory_bytes: None };
+    Child::start(Command::new("ffmpeg").args(arguments), limits, None)
+}
+
 /// Whether there is an `ffmpeg`, before any work is done.
 ///
 /// # Errors
 /// If there is none, saying what to do.
 pub(crate) fn check() -> Result<()> {
-    let found = Command::new("ffmpeg").arg("-version").stdout(Stdio::null()).stderr(Stdio::null()).status();
-    match found {
-        Ok(status) if status.success() => Ok(()),
-        Err(error) if error.kind() == ErrorKind::NotFound => {
+    let mut version = ffmpeg(&["-version"]).context("--mp4: ffmpeg cannot be started")?;
+    match version.wait(TO_ANSWER) {
+        Ok(End::Code(0)) => Ok(()),
+        Ok(End::Code(NOT_STARTED)) => {
             bail!("--mp4: no ffmpeg on the PATH; install it, or leave out --mp4: the GIFs need none")
         }
-        Ok(status) => bail!("--mp4: `ffmpeg -version` ended with {status}"),
-        Err(error) => Err(error).context("--mp4: ffmpeg cannot be started"),
+        Ok(end) => bail!("--mp4: `ffmpeg -version` {end}"),
+        Err(_) => bail!("--mp4: `ffmpeg -version` does not end within {} s", TO_ANSWER.as_secs()),
     }
 }
 
 /// The kind that the `ffmpeg` on the PATH can make: H.264, which every browser plays, else VP9; `None` without one.
 pub(crate) fn kind() -> Option<MediaFormat> {
-    let asked =
-        Command::new("ffmpeg").args(["-v", "error", "-encoders"]).stderr(Stdio::null()).output().ok()?;
-    let known = String::from_utf8_lossy(&asked.stdout).into_owned();
-    let has = |name: &str| known.split_whitespace().any(|word| word == name);
+    let mut asked = ffmpeg(&["-v", "error", "-encoders"]).ok()?;
+    asked.close_input();
+    let (mut known, mut size) = (Vec::new(), 0);
+    let end = loop {
+        match asked.listen(TO_ANSWER) {
+            Ok((line, _)) if size < LIST_BYTES => {
+                size += line.len();
+                let line = String::from_utf8_lossy(&line);
+                known.extend(line.split_whitespace().map(str::to_owned));
+            }
+            Err(Stopped::Ended(end, _)) => break end,
+            _ => return None,
+        }
+    };
+    let has = |name: &str| known.iter().any(|word| word == name);
     match () {
-        () if !asked.status.success() => None,
+        () if end != End::Code(0) => None,
         () if has("libx264") => Some(MediaFormat::Mp4),
         () if has("libvpx-vp9") => Some(MediaFormat::WebM),
         () => None,
@@ -97,7 +126,7 @@ fn scaled(times: u32, flags: &str) -> String {
 }
 
 fn video(animation: &Animation, kind: MediaFormat, quality: &str, filter: &str) -> Result<Vec<u8>> {
-    let folder = tempfile::tempdir()?;
+    let folder = Folder::new().context("cannot make a temporary folder")?;
     // A file and not a pipe: the index is written when all else is known.
     let path = folder.path().join(format!("pair.{}", kind.ending()));
     let size = format!("{}x{}", animation.width, animation.height);
@@ -109,29 +138,29 @@ fn video(animation: &Animation, kind: MediaFormat, quality: &str, filter: &str) 
         }
         MediaFormat::Gif => panic!("an animation is no video"),
     };
-    let mut ffmpeg = Command::new("ffmpeg")
-        .args(["-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", &size, "-r", &rate, "-i", "-"])
-        .args(["-vf", filter])
-        .args(codec)
-        .args(ARGUMENTS)
-        .arg(&path)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .context("ffmpeg cannot be started")?;
-    let mut stdin = ffmpeg.stdin.take().expect("piped");
+    let path_word = path.display().to_string();
+    let input = ["-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", &size, "-r", &rate, "-i", "-"];
+    let words = [&input[..], &["-vf", filter], codec, ARGUMENTS, &[&path_word]].concat();
+    let mut ffmpeg = ffmpeg(&words).context("ffmpeg cannot be started")?;
+    let mut stdin = ffmpeg.take_input().context("ffmpeg has no input")?;
     let colours = animation.palette.colours();
-    let mut sent = Ok(());
-    for frame in &animation.frames {
-        let pixels: Vec<u8> = frame.iter().flat_map(|&index| colours[usize::from(index)]).collect();
-        sent = sent.and_then(|()| stdin.write_all(&pixels));
+    // By a thread, which ends when ffmpeg does: one that reads nothing would be waited for.
+    let (sent, ended) = thread::scope(|scope| {
+        let sending = scope.spawn(move || {
+            animation.frames.iter().try_for_each(|frame| {
+                let pixels: Vec<u8> = frame.iter().flat_map(|&index| colours[usize::from(index)]).collect();
+                stdin.write_all(&pixels)
+            })
+        });
+        let ended = ffmpeg.wait(TO_ENCODE);
+        ffmpeg.kill();
+        (sending.join(), ended)
+    });
+    match ended {
+        Ok(End::Code(0)) => {}
+        Ok(end) => bail!("ffmpeg {end}: {}", ffmpeg.last_words()),
+        Err(_) => bail!("ffmpeg does not end within {} s", TO_ENCODE.as_secs()),
     }
-    drop(stdin);
-    let output = ffmpeg.wait_with_output()?;
-    if !output.status.success() {
-        bail!("ffmpeg ended with {}: {}", output.status, String::from_utf8_lossy(&output.stderr).trim());
-    }
-    sent.context("ffmpeg did not take all frames")?;
-    Ok(std::fs::read(&path)?)
+    sent.expect("nothing panics there").context("ffmpeg did not take all frames")?;
+    input::bytes(&path)
 }

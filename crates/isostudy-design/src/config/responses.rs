@@ -47,8 +47,7 @@ impl ResponsesSection {
     /// # Errors
     /// If it cannot be read, is not TOML, or has a key that is not one of these; `file` is not.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ConfigError::Read { file: path.into(), source })?;
+        let text = crate::read::text(path)?;
         let section: Self = crate::read::parse_toml(&text, path)?;
         match &section.file {
             None => Ok(section),

@@ -68,6 +68,7 @@ fn worker(command: Vec<String>) -> Worker {
         base: Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/methods"),
         time_limit: Duration::from_secs(300),
         memory_limit_bytes: Some(4 << 30),
+        sandbox: false,
     };
     Worker::start(&program).expect("the adapter starts")
 }

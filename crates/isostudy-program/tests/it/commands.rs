@@ -13,6 +13,7 @@ fn program(base: &Path, command: &[&str]) -> Program {
         base: base.to_owned(),
         time_limit: Duration::from_secs(60),
         memory_limit_bytes: None,
+        sandbox: false,
     }
 }
 

@@ -18,6 +18,7 @@ fn example() -> Worker {
         base: repository().join("scripts/methods"),
         time_limit: Duration::from_secs(300),
         memory_limit_bytes: Some(1 << 30),
+        sandbox: false,
     };
     Worker::start(&program).expect("Python starts")
 }

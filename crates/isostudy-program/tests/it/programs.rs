@@ -15,6 +15,7 @@ pub(crate) fn planted(plan: &str) -> Program {
         base: PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/planted"),
         time_limit: Duration::from_secs(120),
         memory_limit_bytes: Some(200 << 20),
+        sandbox: false,
     }
 }
 

@@ -123,6 +123,8 @@ def answer(request):
             del done[key]
     elif PLAN == "nan-seconds":
         done["extraction_s"] = float("nan")
+    elif PLAN == "zero-seconds":
+        done["extraction_s"] = 0.0
     elif PLAN == "negative-seconds":
         done["extraction_s"] = -0.001
     elif PLAN == "milliseconds":

@@ -37,13 +37,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         arguments.downloads.iter().map(|path| files(path)).collect::<Result<_>>()?;
     for path in downloads.iter().flatten() {
         let place = || path.display().to_string();
-        input::regular(path)?;
         ensure!(
             !input::is_same(path, &arguments.out),
             "{}: is a download; it would be written over",
             place()
         );
-        let text = std::fs::read_to_string(path).with_context(place)?;
+        let text = input::text(path)?;
         let given = download::read(&text, &file.study).map_err(|error| match error {
             DownloadError::Columns { .. } => anyhow!(
                 "{}: {error}. `isostudy analyse {} --responses {0}` reads answers of other kinds",

@@ -92,6 +92,9 @@ pub(crate) struct Arguments {
     /// Of a study, run the programs that it names as methods; they may do whatever you may do
     #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "labels"])]
     allow_programs: bool,
+    /// Of a study, run programs by bubblewrap: without a network, in a folder of their own, the system read-only
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "labels"])]
+    sandbox: bool,
     /// Of a study, only these configurations, such as ss_bi; of labels, only these, such as 2,5 [default: all]
     #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh"])]
     only: Vec<String>,
@@ -107,6 +110,7 @@ impl Arguments {
             force: self.force,
             threads: self.threads,
             allow_programs: self.allow_programs,
+            sandbox: self.sandbox,
         };
         Some(Selection { run, only: self.only.clone() })
     }

@@ -68,7 +68,7 @@ pub(super) fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Ve
         let made = made_with(&results.join(MadeWith::file(&configuration.id)))?;
         let current = made.as_ref() == Some(&MadeWith::of(study, configuration));
         let named = || file.display().to_string();
-        let bytes = std::fs::read(file).with_context(named)?;
+        let bytes = input::bytes(file)?;
         let animation = Animation::read_gif(bytes.as_slice()).with_context(named)?;
         let texts = isostudy_raster::gif_texts(&bytes);
         let facts = fact(file_name(file), &animation, made.map(|made| made.camera), texts);
@@ -106,7 +106,8 @@ pub(super) fn bundle_faults(study: &Study, folder: &Path) -> Result<Vec<Fault>> 
     for ending in ["gif", "mp4", "webm"] {
         let mut sizes = Vec::new();
         for file in input::files_of(folder, ending)? {
-            sizes.push((std::fs::metadata(&file)?.len(), file));
+            let found = std::fs::metadata(&file).with_context(|| file.display().to_string())?;
+            sizes.push((found.len(), file));
         }
         sizes.sort();
         if let (Some((least, small)), Some((most, large))) = (sizes.first(), sizes.last())
@@ -125,7 +126,7 @@ pub(super) fn bundle_faults(study: &Study, folder: &Path) -> Result<Vec<Fault>> 
 fn said_by_files(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
     let mut faults = Vec::new();
     for file in input::files_of(folder, "gif")? {
-        let bytes = std::fs::read(&file).with_context(|| file.display().to_string())?;
+        let bytes = input::bytes(&file)?;
         for text in isostudy_raster::gif_texts(&bytes) {
             let named = study.configurations.iter().find(|c| text.contains(&c.id.to_string()));
             let evidence = named.map(|c| format!("\"{text}\" names {}", c.id));
@@ -141,7 +142,7 @@ fn made_with(path: &Path) -> Result<Option<MadeWith>> {
     if !path.is_file() {
         return Ok(None);
     }
-    let text = std::fs::read(path).with_context(|| path.display().to_string())?;
+    let text = input::bytes(path)?;
     Ok(serde_json::from_slice(&text).ok())
 }
 

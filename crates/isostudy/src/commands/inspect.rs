@@ -1,5 +1,6 @@
 //! `isostudy inspect`: one configuration at one resolution, extracted, measured, timed, printed.
 
+use crate::consent;
 use crate::fields::Fields;
 use crate::made::Made;
 use crate::measured::Clock;
@@ -20,6 +21,7 @@ use isostudy_design::machine::CpuProfile;
 use isostudy_design::record::{BenchSample, Purpose, RegionMeasures};
 use isostudy_design::{ConfigurationId, Study};
 use isostudy_extract::{Execution, Extractor, IsosurfacePoints, accuracy_beside};
+use isostudy_foreign::Folder;
 use isostudy_report::Panel;
 use std::path::{Path, PathBuf};
 
@@ -42,6 +44,9 @@ pub(crate) struct Arguments {
     /// Run the configuration's program, if one makes it; it may do whatever you may do
     #[arg(long)]
     allow_programs: bool,
+    /// Run it by bubblewrap: without a network, in a folder of its own, the system read-only
+    #[arg(long)]
+    sandbox: bool,
     /// Print JSON instead
     #[arg(long)]
     json: bool,
@@ -116,11 +121,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let is_program =
         |of| Ok::<_, anyhow::Error>(matches!(recipe(&study, of, Purpose::Benchmark)?, Recipe::Program(_)));
     let needs_program = is_program(id.method)? || budget.map_or(Ok(false), |budget| is_program(budget.of))?;
-    if needs_program && !arguments.allow_programs {
-        let all = recipe::commands(&study)?.join("\n  ");
-        bail!(
-            "{id} is made by a program, which may do whatever you may do; --allow-programs runs it. This study has\n  {all}"
-        );
+    if needs_program {
+        consent::ask(&study, arguments.allow_programs, arguments.sandbox)?;
+        recipe::check(&study)?;
     }
     let spacings = match budget {
         Some(_) => found_spacings(&study, &id, arguments.threads)?,
@@ -158,7 +161,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 
 /// The spacing that a configuration's budget leads to, looked for in a folder that vanishes.
 fn found_spacings(study: &Study, id: &ConfigurationId, threads: u32) -> Result<Spacings> {
-    let folder = tempfile::tempdir()?;
+    let folder = Folder::new().context("cannot make a temporary folder")?;
     let pipeline = Pipeline::new(study, Store::open(folder.path(), false)?, threads as usize);
     pipeline.budgets(&[Purpose::Benchmark], std::slice::from_ref(id))?;
     Ok(pipeline.found_spacings())

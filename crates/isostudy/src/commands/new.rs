@@ -1,5 +1,6 @@
 //! `isostudy new`: a study file of one's own to begin with.
 
+use crate::input;
 use crate::origin;
 use crate::outcome::Outcome;
 use crate::store;
@@ -102,7 +103,7 @@ fn taken(folder: &Path) -> Vec<(String, PathBuf)> {
     };
     let beside = own.parent().map(folders).unwrap_or_default().into_iter().filter(|other| *other != own);
     let beside = beside.map(|other| other.join("study.toml")).filter_map(|file| {
-        let table: toml::Table = fs::read_to_string(&file).ok()?.parse().ok()?;
+        let table: toml::Table = input::text(&file).ok()?.parse().ok()?;
         let id = table.get("study")?.get("id")?.as_str()?.to_owned();
         Some((id, file))
     });

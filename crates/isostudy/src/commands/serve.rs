@@ -82,6 +82,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         loss: if arguments.accept_loss { Loss::Accept } else { Loss::Refuse },
     };
     let answers = settings.answers.clone();
+    // It has an end of its own, at which answers are on disk.
+    isostudy_foreign::leave_signals_to_others();
     isostudy_serve::serve(settings, |address, held| {
         let reached = arguments.public_url.as_ref().map_or(format!("http://{address}"), ToString::to_string);
         tell!("questionnaire   {reached}/");

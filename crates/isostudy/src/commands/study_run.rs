@@ -1,6 +1,7 @@
 //! What commands that work on a study have in common: the options that say which, and the pipeline that does the work.
 
 use super::checked_study;
+use crate::consent;
 use crate::origin;
 use crate::outcome::Outcome;
 use crate::pipeline::Pipeline;
@@ -28,9 +29,13 @@ pub(crate) struct Run {
     /// take the study's own
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
     pub(super) threads: u32,
-    /// Run the programs that the study names as methods; they may do whatever you may do
+    /// Run the programs that the study names as methods; they may do whatever you may do. It is remembered until one of
+    /// their files changes
     #[arg(long)]
     pub(super) allow_programs: bool,
+    /// Run programs by bubblewrap: without a network, in a folder of their own, the system read-only
+    #[arg(long)]
+    pub(super) sandbox: bool,
 }
 
 /// Some of a study's configurations, of commands that take other input than studies as well.
@@ -80,14 +85,8 @@ pub(super) fn with_pipeline(
     work: impl FnOnce(&mut Pipeline<'_>, &Path) -> Result<()>,
 ) -> Result<Outcome> {
     let study = checked_study::load(&run.study)?;
-    let commands = recipe::commands(&study)?;
-    if !commands.is_empty() && !run.allow_programs {
-        bail!(
-            "{} runs programs, which may do whatever you may do; --allow-programs runs them:\n  {}",
-            study.path.display(),
-            commands.join("\n  ")
-        );
-    }
+    consent::ask(&study, run.allow_programs, run.sandbox)?;
+    recipe::check(&study)?;
     on(run, &study, work)
 }
 

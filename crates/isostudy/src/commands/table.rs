@@ -8,7 +8,7 @@ use super::source_arguments::SourceArguments;
 use crate::outcome::Outcome;
 use crate::terminal::say;
 use anyhow::{Context, Result, bail};
-use clap::Args;
+use clap::{Args, ValueHint};
 use isostudy_cells::{Cell, EdgeGroups, Table, radius_ratio};
 use isostudy_extract::presets;
 use places::Part;
@@ -37,7 +37,7 @@ Examples:
 pub(crate) struct Arguments {
     /// A method by its name (`isostudy methods`); hull, the table by convex hulls; or a file that ends in .json
     /// With --figure several, and methods without a table too
-    #[arg(value_name = "NAME", required = true, num_args = 1..)]
+    #[arg(value_name = "NAME", required = true, num_args = 1.., value_hint = ValueHint::FilePath)]
     tables: Vec<String>,
     /// Print the kinds of triangles by which edges their corners lie on, and how well shaped each is; of a surface, how many of its
     /// worst 1,000 triangles are of each

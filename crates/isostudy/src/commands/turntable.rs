@@ -49,6 +49,9 @@ pub(crate) struct Arguments {
     /// Of a study, run the programs that it names as methods; they may do whatever you may do
     #[arg(long)]
     allow_programs: bool,
+    /// Of a study, run programs by bubblewrap: without a network, in a folder of their own, the system read-only
+    #[arg(long)]
+    sandbox: bool,
     /// Of a study, only these configurations, such as ss_bi [default: all]
     #[arg(long, value_name = "ID", value_delimiter = ',')]
     only: Vec<String>,
@@ -170,8 +173,14 @@ impl Arguments {
             );
         }
         let (study, out) = (self.input.clone(), self.out.clone());
-        let run =
-            Run { study, out, force: self.force, threads: self.threads, allow_programs: self.allow_programs };
+        let run = Run {
+            study,
+            out,
+            force: self.force,
+            threads: self.threads,
+            allow_programs: self.allow_programs,
+            sandbox: self.sandbox,
+        };
         Ok(Some(Selection { run, only: self.only.clone() }))
     }
 }

@@ -9,6 +9,7 @@ use anyhow::Result;
 use clap::Args;
 use isostudy_design::record::Purpose;
 use isostudy_extract::Arrangement;
+use isostudy_foreign::shown_in_a_line;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -31,12 +32,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             Recipe::Extractor(method) => method.cells(&grid)?,
             Recipe::Program(_) | Recipe::Meshes(_) => grid.lattice(Arrangement::SimpleCubic)?.cells(),
         };
-        say(&format!(
-            "{}  {}, {}, {x} x {y} x {z} cubes",
-            configuration.id,
-            object.name,
-            study.method(configuration.id.method).label
-        ))?;
+        let (name, label) = (&object.name, &study.method(configuration.id.method).label);
+        let line = format!("{}  {name}, {label}, {x} x {y} x {z} cubes", configuration.id);
+        say(&shown_in_a_line(&line))?;
     }
     let respondents = match answer_files::of_study(&study)? {
         None => "no answers".to_owned(),

@@ -3,18 +3,19 @@
 use super::Pipeline;
 use super::formats::write_table;
 use super::worker::is_program;
-use crate::machine;
 use crate::store::{Inputs, remove_if_there, sha256, write_whole};
 use crate::terminal::progress::Step;
 use crate::terminal::tell_once;
+use crate::{input, machine};
 use anyhow::{Context, Result};
-use isostudy_bench::{AbEntry, AbPlan, BenchError, ProcessExecutor, run_ab};
+use isostudy_bench::{AbEntry, AbPlan, Allowance, BenchError, ProcessExecutor, run_ab};
 use isostudy_design::ConfigurationId;
 use isostudy_design::record::{AbProgram, AbRun, Purpose};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Duration;
 
 const STAGE: &str = "bench/ab";
 
@@ -29,6 +30,8 @@ pub(crate) struct AbChoice {
     pub(crate) processes: u32,
     /// For all of them together.
     pub(crate) seconds: f64,
+    /// For each answer of a program.
+    pub(crate) time_limit: Duration,
 }
 
 impl Pipeline<'_> {
@@ -41,6 +44,9 @@ impl Pipeline<'_> {
             self.budgets(&[Purpose::Benchmark], &choice.only)?;
         }
         let machine = machine::read();
+        // Either may be anybody's. Three quarters leave the machine to go on with.
+        let memory_bytes = machine.memory_bytes.map(|bytes| bytes / 4 * 3);
+        let allowance = Allowance { time: choice.time_limit, memory_bytes };
         let section = &self.study.file.benchmark;
         let configurations = self.timed_of(&choice.only)?;
         let plan = AbPlan {
@@ -67,15 +73,17 @@ impl Pipeline<'_> {
             let begun = AbEntry::Begun { key: key.clone() };
             let lines: String = [&begun].into_iter().chain(&done).map(AbEntry::line).collect();
             write_whole(&journal, lines.as_bytes())?;
-            let mut file = File::options().append(true).open(&journal)?;
+            let mut file =
+                File::options().append(true).open(&journal).with_context(|| journal.display().to_string())?;
             let mut record = |entry: &AbEntry| file.write_all(entry.line().as_bytes());
-            let spacings = self.spacings_file()?;
-            let told = self.invocation([section.threads, u32::from(section.pin)], &ids, spacings.path())?;
+            let (_folder, spacings) = self.spacings_file()?;
+            let told = self.invocation([section.threads, u32::from(section.pin)], &ids, &spacings)?;
             let command = |program: &Path| -> Command { told.command(program) };
             let (of_old, of_new) = (|| command(&choice.old), || command(&choice.new));
             let may_fail = |number: usize| is_program(self.study, configurations[number]);
             let [mut of_old, mut of_new] = [&of_old as &dyn Fn() -> Command, &of_new]
-                .map(|command| ProcessExecutor::new(command).leaving_out(&may_fail).telling(tell_once));
+                .map(|command| ProcessExecutor::new(command).leaving_out(&may_fail).telling(tell_once))
+                .map(|executor| executor.within(allowance));
             let on_pair = &mut |done, all| step.set(done, all);
             let measured = run_ab(&plan, &ids, [&mut of_old, &mut of_new], done, &mut record, on_pair)?;
             let mut workloads = workloads.clone();
@@ -106,7 +114,8 @@ impl Pipeline<'_> {
             tell!("bench ab: nothing was measured; --force measures again");
         }
         let path = self.store.root().join(stamp.file("ab.json"));
-        let run: AbRun = serde_json::from_slice(&std::fs::read(&path)?)?;
+        let run: AbRun =
+            serde_json::from_slice(&input::bytes(&path)?).with_context(|| path.display().to_string())?;
         for (pair, place) in run.pairs.iter().zip(0..) {
             pair.check().with_context(|| format!("{}: pairs[{place}]", path.display()))?;
         }
@@ -138,6 +147,6 @@ impl Pipeline<'_> {
 
 /// What a program's file holds is what it is, wherever it lies.
 fn program(path: &Path) -> Result<AbProgram> {
-    let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let bytes = input::bytes(path).context("cannot read the program")?;
     Ok(AbProgram { path: path.display().to_string(), sha256: sha256(&bytes) })
 }

@@ -2,6 +2,7 @@
 
 use super::web::{LEAST_PADDING, Videos, Web};
 use super::{Meshes, Pipeline};
+use crate::input;
 use crate::picture;
 use crate::source_digests;
 use crate::store::{FileStamp, Inputs, Stamp, sha256};
@@ -59,7 +60,7 @@ impl Pipeline<'_> {
     /// The folder for participants: the page, the forms and every pair, and nothing that tells what a pair shows. All files of a
     /// kind are made the same size, since a smoother surface compresses better. Returns what a participant loads, too.
     pub(crate) fn bundle(&self, forms: &Stamp, pairs: &[Stamp], videos: Videos) -> Result<Media> {
-        let text = std::fs::read(self.store.root().join(forms.file("forms.json")))?;
+        let text = input::bytes(&self.store.root().join(forms.file("forms.json")))?;
         let file: FormFile = serde_json::from_slice(&text)?;
         let Web { stamps: shown, kinds } = self.web(&file, pairs, videos)?;
         let ends = |file: &&FileStamp, kind: MediaFormat| file.path.ends_with(&format!(".{}", kind.ending()));
@@ -93,7 +94,7 @@ impl Pipeline<'_> {
             // In the order of names, so that times of modification tell nothing either.
             files.sort_by_key(|&(name, _, _)| name);
             for (name, kind, file) in files {
-                let mut bytes = std::fs::read(root.join(&file.path))?;
+                let mut bytes = input::bytes(&root.join(&file.path))?;
                 let size = size(kind);
                 match kind {
                     MediaFormat::Mp4 => {

@@ -1,6 +1,7 @@
 //! Every configuration's mesh, once a purpose, with its record.
 
 use super::Pipeline;
+use crate::input;
 use crate::made::Made;
 use crate::prepare::{Prepared, Wanted};
 use crate::records::mesh_record;
@@ -94,6 +95,7 @@ impl Pipeline<'_> {
                 reached += TICKS_A_MESH;
                 // What a program did once it does again.
                 if self.has_failed(&configuration.id) {
+                    step.count_failed();
                     continue;
                 }
                 match self.mesh(configuration, purpose, &step) {
@@ -101,7 +103,10 @@ impl Pipeline<'_> {
                         step.count(stamp.redone);
                         entries.push((configuration.id.clone(), purpose, stamp));
                     }
-                    Err(error) => self.fail(&configuration.id, error)?,
+                    Err(error) => {
+                        self.fail(&configuration.id, error)?;
+                        step.count_failed();
+                    }
                 }
                 step.reach(reached);
             }
@@ -204,7 +209,7 @@ impl Pipeline<'_> {
     pub(super) fn mesh_records(&self, meshes: &Meshes) -> Result<Vec<MeshRecord>> {
         let read = |stamp: &Stamp| {
             let file = stamp.file(".json");
-            let text = std::fs::read(self.store.root().join(file))?;
+            let text = input::bytes(&self.store.root().join(file))?;
             serde_json::from_slice(&text).with_context(|| file.to_owned())
         };
         meshes.stamps().map(read).collect()
@@ -213,7 +218,7 @@ impl Pipeline<'_> {
     /// A finished mesh.
     pub(super) fn read_mesh(&self, stamp: &Stamp) -> Result<TriangleMesh> {
         let file = stamp.file(".ply");
-        let bytes = std::fs::read(self.store.root().join(file))?;
+        let bytes = input::bytes(&self.store.root().join(file))?;
         isostudy_mesh::read_ply(bytes.as_slice()).with_context(|| file.to_owned())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::meshes::TICKS_A_MESH;
 use super::{Meshes, Pipeline};
+use crate::input;
 use crate::picture::{self, Drawn};
 use crate::prepare::Wanted;
 use crate::store::{Inputs, Stamp};
@@ -178,7 +179,7 @@ impl Pipeline<'_> {
 
     pub(super) fn read_animation(&self, stamp: &Stamp) -> Result<Animation> {
         let file = stamp.file(".gif");
-        let bytes = std::fs::read(self.store.root().join(file))?;
+        let bytes = input::bytes(&self.store.root().join(file))?;
         Animation::read_gif(bytes.as_slice()).with_context(|| file.to_owned())
     }
 

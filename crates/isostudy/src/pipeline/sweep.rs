@@ -3,6 +3,7 @@
 use super::Pipeline;
 use super::formats::{write_figure, write_table};
 use super::worker::{Job, swept};
+use crate::input;
 use crate::made::Made;
 use crate::prepare::{self, Wanted};
 use crate::store::{Inputs, Stamp, remove_if_there};
@@ -30,7 +31,7 @@ impl Pipeline<'_> {
         // Threads inside: what is compared is measured close together.
         for &cells in &section.cells {
             let stamp = self.sweep_meshes(section, cells)?;
-            let bytes = std::fs::read(self.store.root().join(stamp.file(".json")))?;
+            let bytes = input::bytes(&self.store.root().join(stamp.file(".json")))?;
             let made: Vec<SweepMesh> = serde_json::from_slice(&bytes)?;
             for configuration in self.swept(section)? {
                 if !made.iter().any(|mesh| mesh.id == configuration.id) {

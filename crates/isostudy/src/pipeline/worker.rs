@@ -5,7 +5,7 @@ use crate::fields::Fields;
 use crate::input;
 use crate::measured::{Clock, asked};
 use crate::prepare::{Prepared, Spacings, Wanted, prepare};
-use crate::recipe::{Recipe, recipe};
+use crate::recipe::{self, Recipe, recipe};
 use crate::store::{sha256, write_whole};
 use crate::terminal::progress::Step;
 use crate::terminal::tell_once;
@@ -16,6 +16,7 @@ use isostudy_design::config::SweepSection;
 use isostudy_design::machine::Machine;
 use isostudy_design::record::{BenchRun, Failure, Purpose};
 use isostudy_design::{Configuration, ConfigurationId, Study};
+use isostudy_foreign::Folder;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -41,6 +42,9 @@ pub(crate) struct Invocation {
     /// Spacings that were found for methods with a budget
     #[arg(long)]
     spacings: Option<PathBuf>,
+    /// Whether programs run in a sandbox
+    #[arg(long)]
+    sandbox: bool,
 }
 
 impl Invocation {
@@ -59,6 +63,8 @@ impl Invocation {
         if let Some(spacings) = &self.spacings {
             command.arg("--spacings").arg(spacings);
         }
+        // Not said if it is not so: an isostudy of before does not know the word.
+        command.args(self.sandbox.then_some("--sandbox"));
         command
     }
 }
@@ -97,11 +103,11 @@ impl Pipeline<'_> {
         let done = self.take_up(journal, key, job)?;
         let lines: String = [Entry::Begun { key: key.into() }].iter().chain(&done).map(Entry::line).collect();
         write_whole(journal, lines.as_bytes())?;
-        let mut file = File::options().append(true).open(journal)?;
+        let mut file =
+            File::options().append(true).open(journal).with_context(|| journal.display().to_string())?;
         let program = std::env::current_exe().context("cannot find this program to start it again")?;
-        let spacings = self.spacings_file()?;
-        let mut invocation =
-            self.invocation([plan.threads, u32::from(plan.pin)], &job.ids(), spacings.path())?;
+        let (_folder, spacings) = self.spacings_file()?;
+        let mut invocation = self.invocation([plan.threads, u32::from(plan.pin)], &job.ids(), &spacings)?;
         invocation.cells = job.cells;
         let worker = || invocation.command(&program);
         let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());
@@ -113,10 +119,11 @@ impl Pipeline<'_> {
     }
 
     /// Spacings that were found, in a file that measuring processes read.
-    pub(super) fn spacings_file(&self) -> Result<tempfile::NamedTempFile> {
-        let mut file = tempfile::NamedTempFile::new()?;
-        file.write_all(&serde_json::to_vec(&*self.spacings())?)?;
-        Ok(file)
+    pub(super) fn spacings_file(&self) -> Result<(Folder, PathBuf)> {
+        let folder = Folder::new().context("cannot make a temporary folder")?;
+        let path = folder.path().join("spacings.json");
+        write_whole(&path, &serde_json::to_vec(&*self.spacings())?)?;
+        Ok((folder, path))
     }
 
     /// What a process that measures these configurations is told.
@@ -129,12 +136,13 @@ impl Pipeline<'_> {
         let left_out = timed(self.study)?.into_iter().map(|c| &c.id).filter(|id| !ids.contains(id));
         Ok(Invocation {
             study: self.study.path.clone(),
-            sha256: sha256(&std::fs::read(&self.study.path)?),
+            sha256: sha256(&input::bytes(&self.study.path)?),
             threads,
             pin: pin > 0,
             cells: None,
             without: left_out.map(ToString::to_string).collect(),
             spacings: Some(spacings.to_owned()),
+            sandbox: recipe::uses_sandbox(),
         })
     }
 
@@ -202,8 +210,9 @@ pub(super) fn swept<'s>(study: &'s Study, section: &SweepSection) -> Result<Vec<
 pub(crate) fn measure(invocation: &Invocation) -> Result<()> {
     isostudy_bench::count_allocations(asked);
     let pinned = if invocation.pin { isostudy_bench::pin(invocation.threads) } else { None };
+    recipe::use_sandbox(invocation.sandbox);
     let study = input::study(&invocation.study)?;
-    if sha256(&std::fs::read(&study.path)?) != invocation.sha256 {
+    if sha256(&input::bytes(&study.path)?) != invocation.sha256 {
         bail!("{} was changed while the benchmark ran", study.path.display());
     }
     let fields = Fields::new(&study);
@@ -265,6 +274,7 @@ mod tests {
             cells: None,
             without: Vec::new(),
             spacings: None,
+            sandbox: false,
         };
         let most = Invocation {
             study: "study.toml".into(),
@@ -274,6 +284,7 @@ mod tests {
             cells: Some(50),
             without: vec!["ss_bi".into(), "as_fp".into()],
             spacings: Some("spacings.json".into()),
+            sandbox: true,
         };
         for invocation in [least, most] {
             let command = invocation.command(Path::new("isostudy"));

@@ -10,6 +10,7 @@ pub(crate) struct Step {
     bar: ProgressBar,
     items: usize,
     redone: AtomicUsize,
+    failed: AtomicUsize,
     began: Instant,
 }
 
@@ -19,7 +20,14 @@ impl Step {
         let style = ProgressStyle::with_template("{msg:14} {wide_bar} {percent:>3} % {eta}")
             .expect("the template is a constant");
         let bar = ProgressBar::new(ticks as u64).with_style(style).with_message(name);
-        Self { name, bar, items, redone: AtomicUsize::new(0), began: Instant::now() }
+        Self {
+            name,
+            bar,
+            items,
+            redone: AtomicUsize::new(0),
+            failed: AtomicUsize::new(0),
+            began: Instant::now(),
+        }
     }
 
     /// Moves the bar on.
@@ -54,6 +62,11 @@ impl Step {
         self.redone.fetch_add(usize::from(redone), Ordering::Relaxed);
     }
 
+    /// Counts an item that failed, and is neither made nor up to date.
+    pub(crate) fn count_failed(&self) {
+        self.failed.fetch_add(1, Ordering::Relaxed);
+    }
+
     /// Counts all items at once.
     pub(crate) fn count_all(&self, redone: bool) {
         self.redone.store(if redone { self.items } else { 0 }, Ordering::Relaxed);
@@ -62,15 +75,19 @@ impl Step {
     /// Ends the step and says what was done.
     pub(crate) fn end(self) {
         self.bar.finish_and_clear();
-        let (name, redone) = (self.name, self.redone.into_inner());
-        if redone == 0 {
-            tell!("{name:14} {:>3} up to date", self.items);
-        } else {
-            tell!(
-                "{name:14} {redone:>3} of {} made, {:.1} s",
-                self.items,
-                self.began.elapsed().as_secs_f64()
-            );
+        tell!("{}", self.summary(self.began.elapsed().as_secs_f64()));
+    }
+}
+
+impl Step {
+    fn summary(&self, seconds: f64) -> String {
+        let [redone, failed] = [&self.redone, &self.failed].map(|count| count.load(Ordering::Relaxed));
+        let (name, items) = (self.name, self.items);
+        let others = if failed == 0 { String::new() } else { format!(", {failed} failed") };
+        match () {
+            () if redone > 0 => format!("{name:14} {redone:>3} of {items} made{others}, {seconds:.1} s"),
+            () if failed > 0 && failed >= items => format!("{name:14} {failed:>3} failed"),
+            () => format!("{name:14} {:>3} up to date{others}", items - failed),
         }
     }
 }
@@ -78,6 +95,21 @@ impl Step {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_failed_is_not_up_to_date() {
+        let said = |redone: usize, failed: usize| {
+            let step = Step::begin("meshes", 3, 0);
+            (0..redone).for_each(|_| step.count(true));
+            (0..failed).for_each(|_| step.count_failed());
+            step.summary(1.0)
+        };
+        assert_eq!(said(0, 0), "meshes           3 up to date");
+        assert_eq!(said(0, 2), "meshes           1 up to date, 2 failed");
+        assert_eq!(said(0, 3), "meshes           3 failed");
+        assert_eq!(said(2, 1), "meshes           2 of 3 made, 1 failed, 1.0 s");
+        assert_eq!(said(3, 0), "meshes           3 of 3 made, 1.0 s");
+    }
 
     #[test]
     fn a_bar_moves_within_an_item_whatever_the_order() {

@@ -141,6 +141,7 @@ fn lines_that_are_no_answers_are_quoted() {
 fn seconds_that_cannot_be_are_refused() {
     for (plan, expected, seconds) in [
         ("negative-seconds", "extraction_s", -0.001),
+        ("zero-seconds", "extraction_s", 0.0),
         ("milliseconds", "extraction_s", 20.0),
         // Each of them fits, both do not.
         ("both-seconds", "callback_s", 0.5),

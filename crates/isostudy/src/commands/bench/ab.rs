@@ -2,6 +2,7 @@
 
 use super::compare::share;
 use crate::commands::study_run::{Run, Selection, with_selection};
+use crate::input;
 use crate::outcome::Outcome;
 use crate::pipeline::AbChoice;
 use crate::terminal::say;
@@ -11,6 +12,7 @@ use isostudy_design::record::AbRun;
 use isostudy_timing::{AbComparison, Quantity};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -29,6 +31,9 @@ pub(crate) struct Arguments {
     /// Measure in so many pairs of processes; the more there are, the less chance gives either program
     #[arg(long, default_value_t = 16, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
     processes: u32,
+    /// End either program if an answer takes longer than so many seconds
+    #[arg(long, default_value_t = 600, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    time_limit: u32,
     /// What decides. CPU time and instructions hardly change beside other work, but do not show threads that wait
     #[arg(long, default_value = "time")]
     by: By,
@@ -98,6 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             only: only.to_vec(),
             processes: arguments.processes,
             seconds: f64::from(arguments.seconds),
+            time_limit: Duration::from_secs(arguments.time_limit.into()),
         };
         let run = pipeline.ab(&choice)?;
         judged = answer(arguments, &run)?;
@@ -144,5 +150,8 @@ fn answer(arguments: &Arguments, run: &AbRun) -> Result<Outcome> {
 
 /// A file, wherever it is started from.
 fn program(path: &Path) -> Result<PathBuf> {
-    std::fs::canonicalize(path).with_context(|| format!("cannot find the program {}", path.display()))
+    input::regular(path)?;
+    let found = std::fs::canonicalize(path);
+    let found = found.with_context(|| format!("cannot find the program {}", path.display()))?;
+    Ok(found)
 }

@@ -1,6 +1,7 @@
 //! `isostudy bench compare`: two finished runs side by side.
 
 use super::baseline;
+use crate::input;
 use crate::outcome::Outcome;
 use crate::run_file;
 use crate::terminal::{counted, say};
@@ -79,7 +80,9 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
 /// If the runs cannot be read or compared.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let at_a = baseline::named(&arguments.a, &arguments.b).map_or_else(|| run_at(&arguments.a), Ok)?;
-    let [a, b] = [at_a, run_at(&arguments.b)?].map(|path| run_file::read(&path));
+    let both = [at_a, run_at(&arguments.b)?];
+    both.iter().try_for_each(|path| input::open(path).map(drop))?;
+    let [a, b] = both.map(|path| run_file::read(&path));
     let (a, b) = (a?, b?);
     let comparison = compared(&a, &b, arguments)?;
     let limits = Limits { relative: arguments.relative, absolute_s: arguments.absolute };

@@ -39,8 +39,6 @@ pub(crate) struct Arguments {
 /// # Errors
 /// If the table or the machine cannot be read, or the run not be written.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    input::regular(&arguments.table)?;
-    let rows = read_benchmark(&arguments.table)?;
     let machine = match &arguments.machine {
         Some(path) => {
             input::regular(path)?;
@@ -48,6 +46,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
         None => CpuProfile::parse(PAPERS_MACHINE, Path::new("configs/cpu/i7-11700.toml"))?,
     };
+    input::regular(&arguments.table)?;
+    let rows = read_benchmark(&arguments.table)?;
     let run =
         isostudy_bench::import(&rows, &arguments.source, arguments.iterations, arguments.threads, &machine)
             .with_context(|| arguments.table.display().to_string())?;

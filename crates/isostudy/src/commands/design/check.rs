@@ -32,6 +32,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let study = input::study(&arguments.study)?;
     forms_section(&study)?;
     let mut faults = lint(&study);
+    if let Some(given) = arguments.results.as_ref().filter(|given| given.exists() && !given.is_dir()) {
+        anyhow::bail!("{}: not a folder", given.display());
+    }
     let results = arguments.results.clone().unwrap_or_else(|| default_folder(&study));
     match stimulus_faults(&study, &results)? {
         Some(found) => faults.extend(found),

@@ -1,5 +1,6 @@
 //! Tables in files.
 
+use crate::input;
 use anyhow::{Context, Result, bail};
 use isostudy_cells::{Cell, Table};
 use serde::{Deserialize, Serialize};
@@ -21,7 +22,7 @@ struct Written {
 /// If it cannot be read, or is none, naming the file and the entry.
 pub(super) fn read(path: &Path) -> Result<Table> {
     let name = || path.display().to_string();
-    let text = std::fs::read_to_string(path).with_context(name)?;
+    let text = input::text(path)?;
     parse(&text).with_context(name)
 }
 

@@ -1,5 +1,6 @@
 //! Every configuration's mesh at each resolution of the viewer, as compact glTF with its errors.
 
+use crate::input;
 use crate::made::{Made, program_error};
 use crate::pipeline::meshes::TICKS_A_MESH;
 use crate::pipeline::{Meshes, Pipeline};
@@ -95,7 +96,7 @@ impl Pipeline<'_> {
             let mut entry = Entry { schema: 1, factor, spacing, mesh: None, missing: None };
             if factor == AS_STIMULI {
                 let record = self.store.root().join(finished.file(".json"));
-                entry.mesh = Some(serde_json::from_slice(&std::fs::read(record)?)?);
+                entry.mesh = Some(serde_json::from_slice(&input::bytes(&record)?)?);
                 self.write_level(&prepared, &self.read_mesh(finished)?, &path, writer)?;
             } else {
                 match self.at_another_spacing(configuration, &prepared, step)? {

@@ -1,7 +1,8 @@
 //! The library that draws: files of three.js, as modules that find each other inside one page.
 
+use crate::input;
 use crate::store::{Inputs, sha256};
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -83,9 +84,9 @@ impl Library {
 
 /// A text; `None` if there is no such file.
 fn read(path: &Path) -> Result<Option<String>> {
-    match std::fs::read_to_string(path) {
+    match input::text(path) {
         Ok(text) => Ok(Some(text)),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(error).with_context(|| path.display().to_string()),
+        Err(_) if path.symlink_metadata().is_err_and(|error| error.kind() == ErrorKind::NotFound) => Ok(None),
+        Err(error) => Err(error),
     }
 }

@@ -7,8 +7,8 @@ use std::thread;
 use std::time::Instant;
 
 /// What was heard.
-#[derive(Debug)]
-pub(crate) enum Heard {
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Heard {
     /// A line without its end, and when that came.
     Line(Vec<u8>, Instant),
     /// The beginning of a line that is too long; nothing comes after it.
