@@ -125,6 +125,10 @@ impl<'a> Evidence<'a> {
     }
 }
 
+/// Why a scale and a test of the same two may differ.
+pub(super) const WEIGHTS: &str = "People gave different numbers of answers. A worth counts every answer alike, and a test counts every \
+                                 person alike, so the two may differ.";
+
 /// Whether somebody gave more answers than another.
 pub(super) fn answer_unequally(shown: &[ShownBallot]) -> bool {
     let mut given: BTreeMap<usize, usize> = BTreeMap::new();

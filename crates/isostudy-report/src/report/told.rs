@@ -1,7 +1,6 @@
 //! Conclusions in sentences: what the abstract finds, and the last lines of `analyse`.
 
-use super::evidence::{answer_unequally, participants};
-use super::worths::WEIGHTS;
+use super::evidence::{WEIGHTS, answer_unequally, participants};
 use super::{checks, sides};
 use crate::wants;
 use crate::words::{capital, counted, interval, list, number, of_all, people, percent};

@@ -1,6 +1,6 @@
 //! What the models say: all items on one scale, and how well the models fit.
 
-use super::evidence::{Evidence, answer_unequally};
+use super::evidence::{Evidence, WEIGHTS, answer_unequally};
 use super::told::named;
 use crate::standing::Standing;
 use crate::statement::{Block, Finding};
@@ -8,10 +8,6 @@ use crate::words::{counted, list, number, p};
 use isostudy_inference::conclusions::{About, Conclusions, Verdict, Why};
 use isostudy_inference::scale::GroupScale;
 use isostudy_statistics::{Difference, Goodness, Model};
-
-/// Why a scale and a test of the same two may differ.
-pub(super) const WEIGHTS: &str = "People gave different numbers of answers. A worth counts every answer alike, and a test counts every \
-                                 person alike, so the two may differ.";
 
 /// Scales told at most; the tables have all.
 const MOST: usize = 12;
