@@ -341,7 +341,7 @@ fn a_download_brings_no_formula() {
         assert!(code == Some(2) && said.contains("empty.csv: ") && said.contains(what), "{said}");
     }
     let Run { code, stderr: said, .. } = collect(Path::new("/dev/null"));
-    assert!(code == Some(2) && said == "isostudy: /dev/null: not a file\n", "{said}");
+    assert!(code == Some(2) && said == "isostudy: /dev/null: not a file, but a device\n", "{said}");
     // A folder of downloads gives what its files give, but for hidden ones.
     let folder = fixture.folder().join("downloads");
     std::fs::create_dir(&folder).unwrap();

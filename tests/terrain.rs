@@ -122,8 +122,10 @@ fn first_screen(out: &Path, known: &[Known], objects: &[&str]) {
     // Beside other work nothing is said of times, and that is said.
     let is_busy = page.contains("Times decide nothing here");
     for (heading, want) in wants.into_iter().filter(|(_, want)| !is_busy || *want != "fastest") {
-        let (_, said) = page.split_once(&format!("{heading}: ")).expect(heading);
-        let said = said.split(['<']).next().unwrap().split(". ").next().unwrap().trim_end_matches('.');
+        // The title has the first part of a sentence alone.
+        let said = page.split(&format!("{heading}: ")).skip(1).map(|said| said.split('<').next().unwrap());
+        let said = said.max_by_key(|said| said.len()).expect(heading);
+        let said = said.split(". ").next().unwrap().trim_end_matches('.');
         for object in objects {
             let own: Vec<&Known> =
                 known.iter().filter(|of| of.object == *object && of.has_own_cubes).collect();

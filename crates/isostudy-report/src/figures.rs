@@ -83,14 +83,10 @@ fn drafts(results: &Results<'_>, sheet: Sheet) -> Vec<Unfinished> {
             .and_then(|of| fronts::overview(inputs.study, &results.decision, of.object, times_decide, sheet)),
     };
     drafts.extend(meshes::triangles(inputs, sheet));
-    let with_busy = |mut draft: Unfinished| {
-        draft.caption.extend(crate::wants::busy(inputs).map(|why| format!(" {why}")));
-        draft
-    };
-    drafts.extend(meshes::pass_times(inputs, sheet).map(with_busy));
+    drafts.extend(meshes::pass_times(inputs, sheet));
     drafts.extend(meshes::radius_ratios(inputs, sheet));
     drafts.extend(meshes::aspect_ratios(inputs, sheet));
-    drafts.extend(stages::stage_times(inputs, sheet).map(with_busy));
+    drafts.extend(stages::stage_times(inputs, sheet));
     drafts.extend(distributions::aspect_ratios(inputs, sheet));
     drafts.extend(fronts::draft(inputs.study, &results.decision, sheet));
     if style::has_codes(inputs.study) {

@@ -4,7 +4,7 @@ use isostudy_design::record::BenchSample;
 
 /// The rows of the claims table by id.
 fn rows(everything: &Everything) -> std::collections::BTreeMap<String, Vec<String>> {
-    let table = table("Costen", &all(&Numbers::of(&everything.inputs()))).unwrap();
+    let table = table(&everything.study, "Costen", &all(&Numbers::of(&everything.inputs()))).unwrap();
     table.shown_rows().into_iter().map(|row| (row[0].clone(), row)).collect()
 }
 
