@@ -4,7 +4,7 @@ use crate::command::{Folder, Run};
 use rustix::process::{Pid, Signal, kill_process};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -197,11 +197,16 @@ fn hanging(folder: &Folder) -> (Child, u32) {
     command.args(["extract", "my/study.toml", "--out", "out", "--only", &id, "--allow-programs"]);
     command.env("TMPDIR", &temporary).env("NUMBER", folder.path("number"));
     let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    (child, number_in(&folder.path("number")))
+}
+
+/// The number in a file, as soon as it is there.
+fn number_in(path: &Path) -> u32 {
     let begin = Instant::now();
     loop {
-        let number = fs::read_to_string(folder.path("number")).unwrap_or_default();
+        let number = fs::read_to_string(path).unwrap_or_default();
         if let Some(number) = number.strip_suffix('\n') {
-            return (child, number.parse().unwrap());
+            return number.parse().unwrap();
         }
         assert!(begin.elapsed() < Duration::from_secs(60), "it starts nothing");
         std::thread::sleep(Duration::from_millis(10));

@@ -123,7 +123,8 @@ fn first_screen(out: &Path, known: &[Known], objects: &[&str]) {
     let is_busy = page.contains("Times decide nothing here");
     for (heading, want) in wants.into_iter().filter(|(_, want)| !is_busy || *want != "fastest") {
         // The title has the first part of a sentence alone.
-        let said = page.split(&format!("{heading}: ")).skip(1).map(|said| said.split('<').next().unwrap());
+        let begins = format!("{heading}: ");
+        let said = page.split(&begins).skip(1).map(|said| said.split('<').next().unwrap());
         let said = said.max_by_key(|said| said.len()).expect(heading);
         let said = said.split(". ").next().unwrap().trim_end_matches('.');
         for object in objects {

@@ -15,9 +15,9 @@ pub(crate) struct Surface<'a> {
 }
 
 enum Normals<'a> {
-    PerVertex(&'a [Vec3]),
-    PerTriangle(Vec<Vec3>),
-    PerCorner(CornerNormals),
+    Vertices(&'a [Vec3]),
+    Triangles(Vec<Vec3>),
+    Corners(CornerNormals),
 }
 
 /// A surface's exposures under one light, in the order of its normals.
@@ -68,9 +68,9 @@ impl<'a> Surface<'a> {
             (b - a).cross(c - a).normalize_or_zero()
         };
         let normals = match look {
-            Look::Smooth | Look::Wireframe | Look::SmoothWireframe => Normals::PerVertex(&mesh.normals),
-            Look::Flat => Normals::PerTriangle((0..mesh.triangles.len()).map(face_normal).collect()),
-            Look::Creased => Normals::PerCorner(corner_normals(mesh, shading.crease_deg)),
+            Look::Smooth | Look::Wireframe | Look::SmoothWireframe => Normals::Vertices(&mesh.normals),
+            Look::Flat => Normals::Triangles((0..mesh.triangles.len()).map(face_normal).collect()),
+            Look::Creased => Normals::Corners(corner_normals(mesh, shading.crease_deg)),
         };
         let places = colouring.map(|colouring| colouring.places(mesh)).transpose()?;
         Ok(Surface { positions: &mesh.positions, triangles: &mesh.triangles, normals, places })
@@ -83,9 +83,9 @@ impl<'a> Surface<'a> {
     /// The exposures under the light of `shading`, which stands as it is.
     pub(crate) fn lit(&self, shading: &Shading) -> Lit {
         let normals = match &self.normals {
-            Normals::PerVertex(normals) => normals,
-            Normals::PerTriangle(normals) => &normals[..],
-            Normals::PerCorner(of) => &of.normals[..],
+            Normals::Vertices(normals) => normals,
+            Normals::Triangles(normals) => &normals[..],
+            Normals::Corners(of) => &of.normals[..],
         };
         Lit(normals.iter().map(|&n| shading.exposure(n)).collect())
     }
@@ -95,9 +95,9 @@ impl<'a> Surface<'a> {
     pub(crate) fn corners(&self, lit: &Lit, triangle: usize) -> Corners {
         let vertices = || self.triangles[triangle].map(|v| v as usize);
         let exposures = match &self.normals {
-            Normals::PerVertex(_) => vertices().map(|v| lit.0[v]),
-            Normals::PerTriangle(_) => [lit.0[triangle]; 3],
-            Normals::PerCorner(of) => of.corners[triangle].map(|place| lit.0[place as usize]),
+            Normals::Vertices(_) => vertices().map(|v| lit.0[v]),
+            Normals::Triangles(_) => [lit.0[triangle]; 3],
+            Normals::Corners(of) => of.corners[triangle].map(|place| lit.0[place as usize]),
         };
         let places = match &self.places {
             None => [0.0; 3],

@@ -95,16 +95,16 @@ impl Turntable {
 
     /// True distance of the eye from the middle, `D sqrt(2 cos^2 u + sin^2 u)`: 1.323 D at u = 30 deg.
     pub fn eye_distance(&self) -> f32 {
-        self.from_middle().length()
+        self.offset_of_eye().length()
     }
 
     /// True elevation of the eye over the middle, radians, `atan(tan u / sqrt 2)`: 22.2 deg at u = 30 deg.
     pub fn eye_elevation_rad(&self) -> f32 {
-        let eye = self.from_middle();
+        let eye = self.offset_of_eye();
         eye.z.atan2(eye.truncate().length())
     }
 
-    fn from_middle(&self) -> Vec3 {
+    fn offset_of_eye(&self) -> Vec3 {
         let Camera { eye, target, .. } = self.camera(0);
         eye - target
     }

@@ -190,7 +190,7 @@ fn grid(cells: u16) -> BoxGrid {
 fn methods() -> [(&'static str, Method); 5] {
     let tetrahedra =
         Tetrahedra { clustering: Clustering::Integrated, ..Tetrahedra::new(Arrangement::BodyCentred) };
-    let relaxed = Tetrahedra { placement: Placement::Relaxed, ..tetrahedra.clone() };
+    let relaxed = Tetrahedra { placement: Placement::Relaxed, ..tetrahedra };
     [
         ("mc", Method::Cubes(Cubes::default())),
         ("nets", Method::SurfaceNets(SurfaceNets::default())),

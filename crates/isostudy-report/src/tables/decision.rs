@@ -62,7 +62,7 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick
     let mut table = Columns::over(rows)
         .column("object", "On", |of| Cell::text(&of.object.name))
         .columns_of(wants.iter().copied(), |all, want| {
-            all.column(words(want).name, &heading(inputs.study, want), |of| cell(of, want))
+            all.column(words(want).name, heading(inputs.study, want), |of| cell(of, want))
         })
         .into_table("choices", "The best method for each object and purpose");
     table.notes.push(

@@ -40,8 +40,11 @@ impl Meshes {
 #[derive(Default)]
 pub(super) struct Isosurfaces {
     object: usize,
-    of_grids: Vec<((f32, BoxGrid, Option<Bounds>), IsosurfacePoints)>,
+    of_grids: Vec<(On, IsosurfacePoints)>,
 }
+
+/// An isovalue, a grid and the region that is judged.
+type On = (f32, BoxGrid, Option<Bounds>);
 
 impl Isosurfaces {
     /// Those of the object before go.
