@@ -3,7 +3,7 @@
 //! `cargo run --release -p isostudy-extract --example seams -- 200`: so many worlds of each shape and method. The tables of
 //! `docs/lod.md` are its output.
 
-#![allow(dead_code)]
+#![allow(dead_code, reason = "the tests use what this example does not")]
 
 #[path = "../tests/it/seam_survey.rs"]
 mod seam_survey;

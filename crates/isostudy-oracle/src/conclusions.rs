@@ -401,7 +401,7 @@ fn what_is_said_is_what_was_found() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: run by make test-long"]
 fn what_is_said_is_what_was_found_in_many_studies() {
     let tried = run(28);
     let Tried { studies, mistaken, metrics, .. } = &tried;
