@@ -12,6 +12,7 @@
 //! ```
 
 mod ab;
+mod accuracies;
 mod budgets;
 mod bundle;
 mod formats;
@@ -28,8 +29,8 @@ mod web;
 mod worker;
 
 pub(crate) use ab::AbChoice;
+use accuracies::Accuracies;
 pub(crate) use bundle::forms_digest;
-use meshes::Isosurfaces;
 pub(crate) use meshes::Meshes;
 pub(crate) use stimuli::MadeWith;
 pub(crate) use tables::{Said, write_answers_only, write_without_study};
@@ -60,8 +61,7 @@ pub(crate) struct Pipeline<'a> {
     frozen: bool,
     /// What was found for methods with a budget.
     spacings: RwLock<Spacings>,
-    /// Points of the isosurface that meshes were last measured against.
-    isosurfaces: Mutex<Isosurfaces>,
+    accuracies: Mutex<Accuracies>,
     /// Configurations whose program failed, and why.
     failed: RwLock<BTreeMap<ConfigurationId, String>>,
 }
@@ -75,7 +75,7 @@ impl<'a> Pipeline<'a> {
             threads,
             frozen: false,
             spacings: RwLock::default(),
-            isosurfaces: Mutex::default(),
+            accuracies: Mutex::default(),
             failed: RwLock::default(),
         }
     }

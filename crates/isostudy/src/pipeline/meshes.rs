@@ -8,13 +8,12 @@ use crate::records::mesh_record;
 use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
 use crate::trilinear_truth::trilinear_truth;
-use crate::{recipe, region, source_digests};
+use crate::{recipe, source_digests};
 use anyhow::{Context, Result};
-use isostudy_design::record::{MeshRecord, Purpose, RegionMeasures};
+use isostudy_design::record::{MeshRecord, Purpose};
 use isostudy_design::{Configuration, ConfigurationId};
-use isostudy_extract::{BoxGrid, Execution, ExtractError, Extractor, IsosurfacePoints, accuracy_beside};
-use isostudy_mesh::{Bounds, TriangleMesh};
-use std::sync::PoisonError;
+use isostudy_extract::{Execution, Extractor};
+use isostudy_mesh::TriangleMesh;
 
 /// How far a mesh moves the bar, which moves while one is extracted: a large volume takes minutes.
 pub(super) const TICKS_A_MESH: usize = 1000;
@@ -33,41 +32,6 @@ impl Meshes {
         let same = |(i, p, _): &&(ConfigurationId, Purpose, Stamp)| i == id && *p == purpose;
         let (_, _, stamp) = self.entries.iter().find(same).expect("every selected mesh has been made");
         stamp
-    }
-}
-
-/// Points of an object's isosurface on each grid that its meshes were made on: all methods share them.
-#[derive(Default)]
-pub(super) struct Isosurfaces {
-    object: usize,
-    of_grids: Vec<(On, IsosurfacePoints)>,
-}
-
-/// An isovalue, a grid and the region that is judged.
-type On = (f32, BoxGrid, Option<Bounds>);
-
-impl Isosurfaces {
-    /// Those of the object before go.
-    fn of(
-        &mut self,
-        object: usize,
-        isovalue: f32,
-        grid: &BoxGrid,
-        region: Option<Bounds>,
-        find: impl FnOnce() -> Result<IsosurfacePoints, ExtractError>,
-    ) -> Result<&IsosurfacePoints, ExtractError> {
-        if self.object != object {
-            *self = Self { object, of_grids: Vec::new() };
-        }
-        let key = (isovalue, *grid, region);
-        let place = match self.of_grids.iter().position(|(known, _)| *known == key) {
-            Some(place) => place,
-            None => {
-                self.of_grids.push((key, find()?));
-                self.of_grids.len() - 1
-            }
-        };
-        Ok(&self.of_grids[place].1)
     }
 }
 
@@ -93,8 +57,12 @@ impl Pipeline<'_> {
         let count = selected.len() * purposes.len();
         let step = Step::begin("meshes", count, count * TICKS_A_MESH);
         let (mut entries, mut reached) = (Vec::new(), 0);
-        for &purpose in purposes {
-            for configuration in &selected {
+        // Object by object: what is found of an isosurface serves all of its meshes.
+        for object in 0..self.study.file.objects.len() {
+            let of_object = || selected.iter().filter(move |configuration| configuration.object == object);
+            for (&purpose, configuration) in
+                purposes.iter().flat_map(|purpose| of_object().map(move |of| (purpose, of)))
+            {
                 reached += TICKS_A_MESH;
                 // What a program did once it does again.
                 if self.has_failed(&configuration.id) {
@@ -115,6 +83,7 @@ impl Pipeline<'_> {
             }
         }
         entries.retain(|(id, ..)| !self.has_failed(id));
+        entries.sort_by_key(|(_, purpose, _)| purposes.iter().position(|of| of == purpose));
         step.end();
         Ok(Meshes { entries })
     }
@@ -131,13 +100,17 @@ impl Pipeline<'_> {
         let object = self.study.object(configuration);
         let found = self.spacings().of(&configuration.id, purpose);
         let spacing = found.unwrap_or_else(|| Wanted::For(purpose).spacing(object));
-        let inputs = self.extraction_inputs(configuration, purpose)?.value("spacing", &spacing);
+        let inputs = self
+            .extraction_inputs(configuration, purpose)?
+            .value("spacing", &spacing)
+            .value("object's spacing", &Wanted::For(purpose).spacing(object));
         self.stage(&format!("mesh/{name}/{}", configuration.id), inputs, |writer| {
             let prepared = self.prepare(configuration, Wanted::For(purpose))?;
             // On one thread, so that calls of the field are counted.
             let execution = Execution { threads: 1 };
             let Made { mesh, counts, program } = self.make(configuration, &prepared, &execution, step)?;
-            let (accuracy, region) = self.accuracy(configuration.object, &prepared, &mesh)?;
+            let own = Wanted::For(purpose).spacing(object);
+            let (accuracy, region) = self.accuracy(configuration.object, own, &prepared, &mesh)?;
             let (cells, measures) = (prepared.cells()?, (&accuracy, region));
             let mut record = mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, measures);
             record.trilinear = trilinear_truth(&prepared, cells);
@@ -185,27 +158,6 @@ impl Pipeline<'_> {
             format!("{file}: objects[{}] with isovalue {isovalue:?}", configuration.object)
         };
         prepared.make(&mut extractor, execution).with_context(place)
-    }
-
-    /// How well a configuration's mesh stands for its isosurface, and what it is in the object's region.
-    pub(super) fn accuracy(
-        &self,
-        object: usize,
-        prepared: &Prepared<'_>,
-        mesh: &TriangleMesh,
-    ) -> Result<(isostudy_extract::Accuracy, Option<RegionMeasures>)> {
-        let Prepared { field, grid, isovalue, .. } = prepared;
-        let execution = Execution { threads: self.threads };
-        let mut kept = self.isosurfaces.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut of = |region: Option<Bounds>| {
-            let find = || IsosurfacePoints::of(*field, *isovalue, grid, region, &execution);
-            let points = kept.of(object, *isovalue, grid, region, find)?;
-            accuracy_beside(points, mesh, *field, *isovalue, grid.spacing, &execution)
-        };
-        let whole = of(None)?;
-        let region = self.study.file.objects[object].region.as_ref();
-        let within = region.map(|at| Ok(region::measures(at, mesh, &of(Some(region::bounds(at)))?)));
-        Ok((whole, within.transpose().map_err(|error: ExtractError| error)?))
     }
 
     /// The records of finished meshes.

@@ -102,7 +102,9 @@ impl Pipeline<'_> {
                 match self.at_another_spacing(configuration, &prepared, step)? {
                     Err(why) => entry.missing = Some(why),
                     Ok(Made { mesh, counts, program }) => {
-                        let (accuracy, region) = self.accuracy(configuration.object, &prepared, &mesh)?;
+                        let own = Wanted::For(Purpose::Stimulus).spacing(object) * factor;
+                        let (accuracy, region) =
+                            self.accuracy(configuration.object, own, &prepared, &mesh)?;
                         let cells = prepared.cells()?;
                         let purpose = Purpose::Stimulus;
                         let measures = (&accuracy, region);
