@@ -49,6 +49,10 @@ fn best<'a>(own: &[&'a Known], want: &str) -> &'a Known {
     };
     let first = least(own, &cost);
     let Some(which) = ["fastest", "closest"].iter().position(|other| *other == want) else { return first };
+    // Where times decide nothing, they take no ties apart.
+    if first.ranges[0][0].is_nan() {
+        return first;
+    }
     let meets = |a: &Known, b: &Known, which: usize| {
         a.ranges[which][0] <= b.ranges[which][1] && b.ranges[which][0] <= a.ranges[which][1]
     };
@@ -70,10 +74,10 @@ fn known(out: &Path) -> Vec<Known> {
         rows(out, table).into_iter().find(is_own).unwrap()
     };
     let fronts = rows(out, "fronts");
+    // The front of times is not there where times decide nothing; errors are the same in both.
     let range = |object: &str, method: &str, quantity: &str| {
-        let is_own = |row: &&Row| {
-            row["object"] == object && row["front"] == "time and error" && row["method"] == method
-        };
+        let front = if quantity == "x" { "time and error" } else { "triangles and error" };
+        let is_own = |row: &&Row| row["object"] == object && row["front"] == front && row["method"] == method;
         let row = fronts.iter().find(is_own)?;
         let value = number(row, quantity);
         Some(["low", "high"].map(|end| number(row, &format!("{quantity}_{end}")).or(value).unwrap()))
@@ -108,6 +112,11 @@ fn known(out: &Path) -> Vec<Known> {
         .collect()
 }
 
+/// Whether the run was measured beside other work, as the first screen says.
+fn is_busy(out: &Path) -> bool {
+    fs::read_to_string(out.join("index.html")).unwrap().contains("Times decide nothing here")
+}
+
 /// What the page says before anybody scrolls: who is the best at what, once more by hand, and a picture of every method.
 fn first_screen(out: &Path, known: &[Known], objects: &[&str]) {
     let labels: BTreeMap<String, String> =
@@ -119,9 +128,7 @@ fn first_screen(out: &Path, known: &[Known], objects: &[&str]) {
         ("Sharp edges kept, of the ground alone", "edges"),
         ("Most regular triangles, of the ground alone", "regular"),
     ];
-    // Beside other work nothing is said of times, and that is said.
-    let is_busy = page.contains("Times decide nothing here");
-    for (heading, want) in wants.into_iter().filter(|(_, want)| !is_busy || *want != "fastest") {
+    for (heading, want) in wants.into_iter().filter(|(_, want)| !is_busy(out) || *want != "fastest") {
         // The title has the first part of a sentence alone.
         let begins = format!("{heading}: ");
         let said = page.split(&begins).skip(1).map(|said| said.split('<').next().unwrap());
@@ -182,6 +189,11 @@ fn the_small_terrain_study_answers_from_its_own_numbers() {
             let of_row =
                 |row: &&Row| known.iter().find(|of| of.object == object && of.method == row["method"]);
             let own: Vec<&Known> = placed.iter().map(|row| of_row(row).unwrap()).collect();
+            // Beside other work nothing is said of times.
+            if is_busy(&out) && front == "time and error" {
+                assert!(own.is_empty(), "{object}: {} in the front", own.len());
+                continue;
+            }
             assert!((8..=14).contains(&own.len()), "{object}: {} in the front", own.len());
             for (row, point) in placed.iter().zip(&own) {
                 let at = cost(point);
@@ -233,11 +245,15 @@ fn the_small_terrain_study_answers_from_its_own_numbers() {
     }
     // From stored samples, the same chunks and edits; what lies between the samples is asked for by some.
     let stored = rows(&out, "stored");
-    assert_eq!(stored.len(), 8 * objects.len());
+    // Three of eleven differ by their look alone.
+    assert_eq!(stored.len(), 11 * objects.len());
     for row in &stored {
         let method = row["id"].split_once('_').unwrap().1;
-        let asks =
-            if ["bi", "bi-relaxed", "dc-in-cell"].contains(&method) { "values between" } else { "samples" };
+        let asks = if ["bi", "bi-relaxed", "dc-in-cell", "dc-smooth"].contains(&method) {
+            "values between"
+        } else {
+            "samples"
+        };
         assert_eq!(row["asks_for"], asks, "{method}");
         for column in ["whole_ms", "chunk_ms", "edit_ms"] {
             assert!(number(row, column).unwrap() > 0.0, "{method}: {column}");
@@ -297,6 +313,8 @@ fn liked(folder: &Folder, text: &str) {
     assert_eq!(said, ["nets-manifold", "nets-manifold", "nets-manifold", "dc-in-cell"]);
     let report = fs::read_to_string(folder.path("out/report.md")).unwrap();
     assert!(report.contains("the look that people like most"), "{report}");
+    // Nobody compared these two with the others, on the building, which has its scale all the same.
+    assert!(report.contains("No answers join nets-flat and nets-smooth to the other methods."), "{report}");
 }
 
 /// docs/terrain.md has the rows that were published, and no others.

@@ -12,6 +12,7 @@ use isostudy_statistics::interval::{Interval, t_half_width};
 use isostudy_statistics::{
     Difference, FitError, Participants, Scale, ShownBallot, clustered_covariance, has_spread, scale,
 };
+use std::collections::BTreeSet;
 
 /// Log-odds that differ by less differ by rounding.
 const ALIKE: f64 = 1e-9;
@@ -20,11 +21,15 @@ const ALIKE: f64 = 1e-9;
 pub struct Liking {
     /// The object by index; `None` for all of them.
     pub object: Option<usize>,
-    /// The methods that were compared, in the study's order.
+    /// The methods that were compared, in the study's order: if answers do not join all of them, those of the set that has more
+    /// than half.
     pub methods: Vec<MethodId>,
+    /// The methods that no answers join to these.
+    pub apart: Vec<MethodId>,
     /// By method, the log worth less the mean of all, with its interval at 95 % over people. `None` where there is no one scale.
     pub worths: Result<Vec<(f64, Option<Interval>)>, FitError>,
-    /// The most liked; `None` where there is no one scale.
+    /// The most liked; `None` where there is no one scale, or where nothing bounds the worths and tests about the two themselves do
+    /// not take it apart from everybody else.
     pub top: Option<Top>,
     /// Every two methods, in the study's order; none where there is no one scale.
     pub pairs: Vec<LikedPair>,
@@ -54,8 +59,6 @@ pub struct Top {
     pub best: MethodId,
     /// The others by their worths, from which it was not shown to differ.
     pub alike: Vec<MethodId>,
-    /// Whether it is an estimate: some items never won against the others, so that nothing bounds the worths.
-    pub is_penalised: bool,
 }
 
 impl Liking {
@@ -78,9 +81,16 @@ impl Liking {
         if items.len() < 2 {
             return None;
         }
-        let place = |item: usize| items.binary_search(&item).expect("collected above");
-        let own: Vec<ShownBallot> =
-            ballots.iter().map(|b| b.with_items([place(b.left()), place(b.right())])).collect();
+        let pairs: BTreeSet<[usize; 2]> = ballots.iter().map(|b| [b.left(), b.right()]).collect();
+        let joined = most_joined(&items, &pairs);
+        let (items, apart): (Vec<usize>, Vec<usize>) =
+            items.into_iter().partition(|item| joined.contains(item));
+        let apart = apart.into_iter().map(|item| all[item]).collect();
+        let place = |item: usize| items.binary_search(&item).ok();
+        let own: Vec<ShownBallot> = ballots
+            .iter()
+            .filter_map(|b| Some(b.with_items([place(b.left())?, place(b.right())?])))
+            .collect();
         let participants = Participants::of(items.len(), &own);
         let methods: Vec<MethodId> = items.iter().map(|&item| all[item]).collect();
         let found = scale(&participants, 0);
@@ -88,7 +98,7 @@ impl Liking {
             Some(object) => is_shown_on(study, &answered.hypotheses, object, [methods[a], methods[b]]),
             None => is_shown(Some(study), &answered.hypotheses, "", methods[a].as_str(), methods[b].as_str()),
         };
-        let top = found.as_ref().ok().map(|scale| Top::of(scale, &methods, level, &shown));
+        let top = found.as_ref().ok().and_then(|scale| Top::of(scale, &methods, level, &shown));
         let pair = |of: &Difference| {
             let [first, second] = [methods[of.first], methods[of.second]];
             let adjusted = of.spread.map(|spread| spread.adjusted);
@@ -104,7 +114,7 @@ impl Liking {
         let pairs =
             found.as_ref().map_or_else(|_| Vec::new(), |scale| scale.differences.iter().map(pair).collect());
         let worths = found.map(|scale| centred(&scale, &participants));
-        Some(Self { object, methods, worths, top, pairs })
+        Some(Self { object, methods, apart, worths, top, pairs })
     }
 
     /// The method that was shown to be liked more, then the other, of every two of which one was.
@@ -121,10 +131,15 @@ impl Liking {
 }
 
 impl Top {
-    fn of(scale: &Scale, methods: &[MethodId], level: f64, is_shown: &dyn Fn(usize, usize) -> bool) -> Self {
+    fn of(
+        scale: &Scale,
+        methods: &[MethodId],
+        level: f64,
+        is_shown: &dyn Fn(usize, usize) -> bool,
+    ) -> Option<Self> {
         let Order { best, alike } = Order::of(scale, level, is_shown);
-        let alike = alike.into_iter().map(|item| methods[item]).collect();
-        Self { best: methods[best], alike, is_penalised: scale.fit.penalised() }
+        let alike: Vec<MethodId> = alike.into_iter().map(|item| methods[item]).collect();
+        (!scale.fit.penalised() || alike.is_empty()).then_some(Self { best: methods[best], alike })
     }
 }
 
@@ -154,6 +169,32 @@ impl Order {
         let alike = order[1..].iter().copied().filter(|&other| !differs(other)).collect();
         Self { best, alike }
     }
+}
+
+/// The set that has more than half of the items, of the sets that pairs join; all items if none has.
+fn most_joined(items: &[usize], pairs: &BTreeSet<[usize; 2]>) -> Vec<usize> {
+    let mut open = items.to_vec();
+    while let Some(&first) = open.first() {
+        let mut set = vec![first];
+        loop {
+            let before = set.len();
+            for &[one, other] in pairs {
+                match (set.contains(&one), set.contains(&other)) {
+                    (true, false) => set.push(other),
+                    (false, true) => set.push(one),
+                    _ => {}
+                }
+            }
+            if set.len() == before {
+                break;
+            }
+        }
+        if 2 * set.len() > items.len() {
+            return set;
+        }
+        open.retain(|item| !set.contains(item));
+    }
+    items.to_vec()
 }
 
 /// Whether a held test about these two themselves, over all answers, prefers the first. Items are methods, levels of a factor, or what

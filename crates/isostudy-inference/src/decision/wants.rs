@@ -234,8 +234,8 @@ impl Want {
         }
         // By worths the top of the scale knows who was shown to differ from it.
         let most_liked = of.most_liked.as_ref().filter(|_| self.goal == Goal::Preferred);
-        if most_liked.is_some_and(|top| top.best != leader.id()) {
-            // Whoever is the most liked differs from a candidate in its look alone, and is none.
+        // Not where nobody is, or where whoever is differs from a candidate in its look alone, and is none.
+        if self.goal == Goal::Preferred && most_liked.is_none_or(|top| top.best != leader.id()) {
             return None;
         }
         let is_alike = |(other, value): &&(&Candidate<'a>, Estimate)| {

@@ -92,3 +92,18 @@ fn worths_are_about_the_mean_of_all() {
     assert!((found[0].0 - 0.5 * difference.log_odds).abs() < 1e-12);
     assert!((half.high - half.low - 0.5 * (whole.high - whole.low)).abs() < 1e-9);
 }
+
+#[test]
+fn the_set_with_more_than_half_of_the_items_is_the_one_that_is_judged() {
+    let of = |items: &[usize], pairs: &[[usize; 2]]| {
+        let mut set = most_joined(items, &pairs.iter().copied().collect());
+        set.sort_unstable();
+        set
+    };
+    assert_eq!(of(&[2, 3, 5, 7, 9], &[[9, 2], [5, 9], [3, 7]]), [2, 5, 9]);
+    assert_eq!(of(&[2, 3, 5, 7, 9], &[[3, 2], [5, 9], [7, 5]]), [5, 7, 9]);
+    // Joined by a chain that is given backwards.
+    assert_eq!(of(&[1, 2, 3, 4], &[[3, 4], [2, 3], [1, 2]]), [1, 2, 3, 4]);
+    // Halves: neither is the study's scale.
+    assert_eq!(of(&[1, 2, 3, 4], &[[1, 2], [3, 4]]), [1, 2, 3, 4]);
+}

@@ -8,7 +8,7 @@ use crate::ballots::widest;
 use crate::decision::{Goal, Pick};
 use crate::glance::Row;
 use crate::hypotheses::{self, Conclusion as Tested, Hypothesis};
-use crate::liking::{self, Liking, Order, Top};
+use crate::liking::{self, Liking, Order};
 use crate::prediction::Prediction;
 use crate::results::Preferences;
 use isostudy_design::contrast::Over;
@@ -188,14 +188,13 @@ impl Conclusions {
         let limits = self.about(About::Contrast(0)).map_or_else(Vec::new, |of| of.limits.clone());
         for (place, liking) in likings.iter().enumerate() {
             let verdict = match (&liking.top, &liking.worths) {
-                (Some(Top { is_penalised: true, .. }), _) => Verdict::NotJudged(Why::Separated),
                 (Some(top), _) => Verdict::Best {
                     best: top.best.to_string(),
                     tied: top.alike.iter().map(ToString::to_string).collect(),
                     is_everybody: top.alike.len() + 1 == liking.methods.len(),
                 },
                 (None, Err(reason)) => Verdict::NotJudged(Why::NoEstimate(*reason)),
-                (None, Ok(_)) => Verdict::NotJudged(Why::Design),
+                (None, Ok(_)) => Verdict::NotJudged(Why::Separated),
             };
             self.all.push(Conclusion { about: About::MostLiked(place), verdict, limits: limits.clone() });
         }
@@ -288,17 +287,17 @@ fn contrast(preferences: &Preferences<'_>, place: usize, row: &Row, limits: &[Li
     Conclusion { about: About::Contrast(place), verdict, limits }
 }
 
-/// The top of a group's scale; none where nothing bounds the worths.
+/// The top of a group's scale; none where nothing bounds the worths and tests about two items do not take it apart from everybody.
 fn top(preferences: &Preferences<'_>, place: usize, level: f64, limits: &[Limit]) -> Option<Conclusion> {
     let of = &preferences.scales[place];
     let (scale, items) = (of.scale.as_ref().ok()?, &of.group.items);
-    if scale.fit.penalised() {
-        return None;
-    }
     let is_shown = |a: usize, b: usize| {
         liking::is_shown(preferences.study, &preferences.hypotheses, &of.group.name, &items[a], &items[b])
     };
     let Order { best, alike } = Order::of(scale, level, &is_shown);
+    if scale.fit.penalised() && !alike.is_empty() {
+        return None;
+    }
     let verdict = Verdict::Best {
         best: items[best].clone(),
         is_everybody: alike.len() + 1 == items.len(),

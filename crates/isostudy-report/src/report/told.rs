@@ -4,7 +4,7 @@ use super::evidence::{WEIGHTS, answer_unequally, participants};
 use super::{checks, sides};
 use crate::wants;
 use crate::words::{capital, counted, interval, list, number, of_all, people, percent};
-use isostudy_design::Study;
+use isostudy_design::{MethodId, Study};
 use isostudy_inference::conclusions::{About, Conclusion, Conclusions, Verdict, Why};
 use isostudy_inference::decision::Goal;
 use isostudy_inference::glance::Row;
@@ -12,6 +12,7 @@ use isostudy_inference::hypotheses::Target;
 use isostudy_inference::prediction::MetricPrediction;
 use isostudy_inference::{Preferences, Results};
 use isostudy_statistics::{Outcome, ShownBallot};
+use std::collections::BTreeSet;
 
 /// Contrasts over all answers that are not named one by one.
 const MANY: usize = 12;
@@ -178,10 +179,17 @@ impl Told<'_, '_> {
         }
         let (_, first) = parts.first()?;
         // Over all objects, and on each of them.
-        if parts.len() == 1 + study.file.objects.len() && parts.iter().all(|(_, text)| text == first) {
-            return Some(format!("Most liked on every object: {first}."));
+        let is_one =
+            parts.len() == 1 + study.file.objects.len() && parts.iter().all(|(_, text)| text == first);
+        let mut said: Vec<String> = match is_one {
+            true => vec![format!("Most liked on every object: {first}.")],
+            false => parts.iter().map(|(on, text)| format!("Most liked {on}: {text}.")).collect(),
+        };
+        let apart: BTreeSet<&MethodId> = results.likings.iter().flat_map(|of| &of.apart).collect();
+        if !apart.is_empty() {
+            let names: Vec<String> = apart.into_iter().map(ToString::to_string).collect();
+            said.push(format!("No answers join {} to the other methods.", named(&names)));
         }
-        let said: Vec<String> = parts.iter().map(|(on, text)| format!("Most liked {on}: {text}.")).collect();
         Some(said.join(" "))
     }
 
