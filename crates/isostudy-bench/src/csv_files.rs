@@ -5,7 +5,7 @@ use isostudy_design::record::{BenchRun, BenchSample};
 use serde::Serialize;
 
 /// The columns of a sample.
-const SAMPLE: [&str; 19] = [
+const SAMPLE: [&str; 20] = [
     "id",
     "invocation",
     "iteration",
@@ -25,6 +25,7 @@ const SAMPLE: [&str; 19] = [
     "cache_misses",
     "branch_misses",
     "energy_j",
+    "outside_s",
 ];
 /// The columns of a property.
 const PROPERTY: [&str; 4] = ["property", "target", "machine", "matches"];
@@ -70,7 +71,7 @@ mod tests {
         let text = samples_csv(&run.samples);
         let header = "id,invocation,iteration,place,allocation_s,sampling_s,vertex_s,geometry_s,clustering_s,normals_s,\
                       total_s,reference_s,cpu_s,page_faults,context_switches,instructions,cache_misses,\
-                      branch_misses,energy_j";
+                      branch_misses,energy_j,outside_s";
         assert_eq!(text.lines().next(), Some(header));
         // A file has no nesting: a row is read as a sample, and once more as what was counted.
         let mut samples = rows::<BenchSample>(&text);

@@ -45,6 +45,7 @@ impl Meter {
                 .zip(energy_uj())
                 .and_then(|(before, after)| after.checked_sub(before))
                 .map(|used| 1e-6 * used as f64),
+            outside_s: None,
         }
     }
 }

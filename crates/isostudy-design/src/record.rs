@@ -243,6 +243,9 @@ pub struct Histogram {
     pub above: u64,
 }
 
+/// Where counting of intersecting pairs ends.
+pub const MOST_INTERSECTIONS: u64 = 1_000_000;
+
 /// Topology of a mesh. Names as in `isostudy_mesh::topology::TopologyReport`, whose docs define them, but for the last.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "defined where they are counted, in `isostudy_mesh::topology`")]
@@ -258,8 +261,9 @@ pub struct Topology {
     pub folded_faces: u64,
     pub components: u64,
     pub euler_characteristic: i64,
-    /// Pairs of triangles that pass through each other, as `isostudy_mesh::self_intersections` counts them. Records of before this was counted
-    /// have none.
+    /// Pairs of triangles that pass through each other, as `isostudy_mesh::self_intersections` counts them: up to
+    /// [`MOST_INTERSECTIONS`], which means at least as many. `None` where the search was given up, and in records of before this was
+    /// counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub self_intersections: Option<u64>,
 }
@@ -456,6 +460,10 @@ pub struct Counters {
     pub branch_misses: Option<u64>,
     /// Energy of the whole package, in joules.
     pub energy_j: Option<f64>,
+    /// Of a program that is not ours, seconds from the request to its answer by our clock, beside what it says itself: the command's
+    /// reading and writing, and the program's reading of samples, are in it.
+    #[serde(default)]
+    pub outside_s: Option<f64>,
 }
 
 /// What others had of the machine during some rounds of an invocation, or before the run.

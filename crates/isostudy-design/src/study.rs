@@ -94,6 +94,13 @@ impl Study {
         &self.file.objects[configuration.object]
     }
 
+    /// Whether an earlier method makes the same meshes, so that this one differs in its look alone.
+    pub fn is_repeated(&self, method: MethodId) -> bool {
+        let of = self.method(method);
+        let earlier = self.methods.iter().take_while(|other| other.id != method);
+        earlier.into_iter().any(|other| other.recipe == of.recipe && other.budget == of.budget)
+    }
+
     /// How a configuration's animation shows it. One look for all, until methods have their own.
     pub fn look(&self, configuration: &Configuration) -> StimulusLook {
         self.method(configuration.id.method).look.unwrap_or(self.file.turntable.look)

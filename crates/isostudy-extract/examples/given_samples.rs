@@ -2,13 +2,14 @@
 //!
 //! `given_samples FIELD N FILE` writes N^3 samples of a field to a file, little-endian floats, x fastest. For each line `METHOD THREADS`
 //! of its input it then extracts once, into new memory, and prints wall-clock milliseconds, those of the CPU time of its first thread,
-//! vertices and triangles. Normals are not in the times: of the CPU time, their share of the wall-clock time is taken off.
+//! vertices and triangles. `sum 1` adds all samples up, the least that reads each of them once. Normals are not in the times: of the CPU time, their share of the wall-clock time is taken off.
 
 mod given;
 
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::io::BufRead;
+use std::time::Instant;
 
 use given::{cpu_ms, samples};
 use glam::Vec3;
@@ -39,6 +40,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     for line in std::io::stdin().lock().lines() {
         let line = line?;
         let (id, threads) = line.split_once(' ').ok_or("a line says METHOD THREADS")?;
+        if id == "sum" {
+            println!("{}", sum_times(&corners));
+            continue;
+        }
         let preset = presets().iter().find(|preset| preset.id == id).ok_or("no such preset")?;
         let values = match preset.method {
             Method::Tetrahedra(tetrahedra) if tetrahedra.arrangement == Arrangement::BodyCentred => {
@@ -59,4 +64,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{:.4} {:.4} {vertices} {triangles}", all - normals, cpu * (1.0 - normals / all));
     }
     Ok(())
+}
+
+/// What adding all samples up takes, in eight sums, so that the CPU waits for memory and not for additions.
+fn sum_times(samples: &[f32]) -> String {
+    let (cpu, start) = (cpu_ms(), Instant::now());
+    let mut sums = [0.0f32; 8];
+    for eight in std::hint::black_box(samples).chunks_exact(8) {
+        sums.iter_mut().zip(eight).for_each(|(sum, value)| *sum += value);
+    }
+    std::hint::black_box(sums);
+    format!("{:.4} {:.4} 0 0", start.elapsed().as_secs_f64() * 1e3, cpu_ms() - cpu)
 }

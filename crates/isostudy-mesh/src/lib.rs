@@ -71,6 +71,6 @@ pub use glam;
 pub use labelled::LabelledMesh;
 pub use nearest::{NearestPoint, NearestTriangles};
 pub use numbers::{COORDINATE_LIMIT, MeshError, is_sound, used_vertices};
-pub use self_intersections::self_intersections;
+pub use self_intersections::{MOST_INTERSECTIONS, self_intersections};
 pub use triangle_mesh::{Bounds, TriangleMesh};
 pub use weld::weld;

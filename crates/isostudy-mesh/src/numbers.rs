@@ -32,6 +32,13 @@ pub enum MeshError {
         /// Where it is.
         position: Vec3,
     },
+    /// So many triangles lie so close to each other that looking for intersections was given up.
+    Entangled {
+        /// Pairs of boxes that were looked at.
+        looks: u64,
+        /// Pairs of triangles that were found to intersect before.
+        found: u64,
+    },
 }
 
 impl fmt::Display for MeshError {
@@ -44,6 +51,11 @@ impl fmt::Display for MeshError {
             Self::Coordinate { vertex, position } => write!(
                 f,
                 "vertex {vertex} is at {position}; coordinates must be numbers up to {COORDINATE_LIMIT:e}"
+            ),
+            Self::Entangled { looks, found } => write!(
+                f,
+                "the triangles lie so close to each other that looking for intersections was given up after {looks} looks; {found} \
+                 pairs intersect so far"
             ),
         }
     }

@@ -1,144 +1,164 @@
 //! Pairs of triangles that pass through each other.
 
 mod exact;
+mod fans;
 mod pair;
+mod tree;
+
+use std::collections::HashMap;
+use std::ops::ControlFlow;
 
 use glam::Vec3;
 
 use self::pair::{has_area, meet_beyond_what_they_share};
+use self::tree::{Around, Tree, Visit};
 use crate::{MeshError, TriangleMesh, used_vertices};
 
+/// Counting ends with so many pairs.
+pub const MOST_INTERSECTIONS: u64 = 1_000_000;
+/// Round a corner with more triangles than this, boxes of triangles tell too little.
+const MANY: usize = 32;
+/// Looks at pairs of boxes, before the search is given up: so many, and so many per triangle.
+const LOOKS: u64 = 10_000_000;
+const LOOKS_EACH: u64 = 600;
+/// Two triangles take as long as so many pairs of boxes.
+const LOOKS_OF_MEETING: u64 = 32;
+
 /// How many pairs of triangles of a mesh have a point in common that is no common vertex and lies on no common side. Touching counts: a
-/// vertex that lies in another triangle, two triangles that lie on each other.
+/// vertex that lies in another triangle, two triangles that lie on each other. Of more than [`MOST_INTERSECTIONS`] pairs, that number is
+/// the answer: there are at least so many.
 ///
 /// Vertices at one place count as one, whatever their numbers are. Triangles without area meet nothing. The answer is exact: signs of
 /// volumes and areas are computed with as many digits as they need (Shewchuk 1997).
 ///
-/// Takes O(n log n) where triangles are about equally large: a second or two for a million of them.
+/// Takes O(n log n) where few boxes of triangles meet without the triangles: a second or two for a million of them. Triangles round one
+/// corner or one side are told apart by their directions from it.
 ///
 /// # Errors
-/// As [`used_vertices`].
+/// As [`used_vertices`]; and [`MeshError::Entangled`] where so many boxes of triangles meet that the search is given up.
 pub fn self_intersections(mesh: &TriangleMesh) -> Result<u64, MeshError> {
     used_vertices(mesh)?;
     let corners: Vec<[Vec3; 3]> =
         (0..mesh.triangles.len()).map(|t| mesh.corners(t)).filter(|corners| has_area(*corners)).collect();
-    if corners.is_empty() {
-        return Ok(0);
-    }
-    let tree = Tree::of(&corners);
-    Ok(tree.pairs_within(&corners, 0))
-}
-
-/// A box along the axes.
-#[derive(Debug, Clone, Copy)]
-struct Around {
-    low: Vec3,
-    high: Vec3,
-}
-
-impl Around {
-    fn of(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
-        let nothing = Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
-        triangles.flatten().fold(nothing, |of, p| Self { low: of.low.min(p), high: of.high.max(p) })
-    }
-
-    fn meets(&self, other: &Self) -> bool {
-        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    let looks = LOOKS + LOOKS_EACH * corners.len() as u64;
+    let mut count = Count { corners: &corners, found: 0, looks };
+    // Whether it is broken off, its numbers say.
+    let _ = count.all();
+    match count.looks {
+        0 => Err(MeshError::Entangled { looks, found: count.found }),
+        _ => Ok(count.found),
     }
 }
 
-/// The most triangles that are not divided any further.
-const LEAF: usize = 4;
-
-/// A node of a tree: its triangles, and its two halves, the first right after it.
-#[derive(Debug)]
-struct Node {
-    around: Around,
-    members: std::ops::Range<usize>,
-    /// The node of the second half; none in a leaf.
-    second: Option<usize>,
+struct Count<'a> {
+    corners: &'a [[Vec3; 3]],
+    found: u64,
+    /// Looks that are left.
+    looks: u64,
 }
 
-/// Triangles by halves, apart along the longest axis of their box.
-struct Tree {
-    nodes: Vec<Node>,
-    members: Vec<u32>,
-}
-
-impl Tree {
-    fn of(corners: &[[Vec3; 3]]) -> Self {
-        let members = (0..corners.len() as u32).collect();
-        let mut tree = Self { nodes: Vec::new(), members };
-        tree.add(corners, 0..corners.len());
-        tree
+impl Visit for Count<'_> {
+    fn look(&mut self) -> ControlFlow<()> {
+        self.spend(1)
     }
 
-    fn add(&mut self, corners: &[[Vec3; 3]], members: std::ops::Range<usize>) -> usize {
-        let own = &mut self.members[members.clone()];
-        let around = Around::of(own.iter().map(|&t| corners[t as usize]));
-        let axis = (around.high - around.low).max_position();
-        let number = self.nodes.len();
-        self.nodes.push(Node { around, members: members.clone(), second: None });
-        if members.len() > LEAF {
-            let key = |t: u32| corners[t as usize].iter().map(|p| p[axis]).sum::<f32>();
-            let half = members.len() / 2;
-            own.select_nth_unstable_by(half, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
-            let middle = members.start + half;
-            self.add(corners, members.start..middle);
-            self.nodes[number].second = Some(self.add(corners, middle..members.end));
+    fn meet(&mut self, a: u32, b: u32) -> ControlFlow<()> {
+        self.spend(LOOKS_OF_MEETING)?;
+        let [a, b] = [a, b].map(|t| self.corners[t as usize]);
+        self.found += u64::from(meet_beyond_what_they_share(a, b));
+        if self.found >= MOST_INTERSECTIONS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+impl Count<'_> {
+    fn spend(&mut self, looks: u64) -> ControlFlow<()> {
+        self.looks = self.looks.saturating_sub(looks);
+        if self.looks == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn all(&mut self) -> ControlFlow<()> {
+        let triangles: Vec<u32> = (0..self.corners.len() as u32).collect();
+        let (single, fans) = self.fans(&triangles, &[]);
+        let boxes: Vec<Around> =
+            self.corners.iter().map(|of| Around::of(of.iter().map(|p| p.as_dvec3()))).collect();
+        let groups: Vec<Vec<u32>> = fans.iter().map(|(_, fan)| fan.clone()).collect();
+        Tree::of(&boxes, &single, &groups).pairs(self)?;
+        for (apex, fan) in &fans {
+            self.round_corner(*apex, fan)?;
         }
-        number
+        ControlFlow::Continue(())
     }
 
-    /// Pairs of triangles of one node.
-    fn pairs_within(&self, corners: &[[Vec3; 3]], number: usize) -> u64 {
-        let node = &self.nodes[number];
-        if let Some(second) = node.second {
-            let first = number + 1;
-            return self.pairs_within(corners, first)
-                + self.pairs_within(corners, second)
-                + self.pairs_between(corners, first, second);
+    /// Pairs of triangles that have this corner.
+    fn round_corner(&mut self, apex: Vec3, fan: &[u32]) -> ControlFlow<()> {
+        let (single, books) = self.fans(fan, &[apex]);
+        let (single, books) = (places(fan, &single), books);
+        let boxes: Vec<Around> = self.boxes(fan, |of| fans::arc(of, apex));
+        let groups: Vec<Vec<u32>> = books.iter().map(|(_, book)| places(fan, book)).collect();
+        Tree::of(&boxes, &single, &groups).pairs(&mut Within { count: self, of: fan })?;
+        for (other, book) in &books {
+            let boxes: Vec<Around> = self.boxes(book, |of| fans::across(of, [apex, *other]));
+            let all: Vec<u32> = (0..book.len() as u32).collect();
+            Tree::of(&boxes, &all, &[]).pairs(&mut Within { count: self, of: book })?;
         }
-        let own = &self.members[node.members.clone()];
-        let with_later = |(i, a): (usize, &u32)| meeting(corners, &[*a], &own[i + 1..]);
-        own.iter().enumerate().map(with_later).sum()
+        ControlFlow::Continue(())
     }
 
-    /// Pairs of a triangle of one node and one of another.
-    fn pairs_between(&self, corners: &[[Vec3; 3]], a: usize, b: usize) -> u64 {
-        let [of_a, of_b] = [a, b].map(|number| &self.nodes[number]);
-        if !of_a.around.meets(&of_b.around) {
-            return 0;
+    fn boxes(&self, of: &[u32], around: impl Fn(&[Vec3; 3]) -> Around) -> Vec<Around> {
+        of.iter().map(|&t| around(&self.corners[t as usize])).collect()
+    }
+
+    /// The triangles with a corner, beside those `known`, that more than [`MANY`] of them have, each with the one that most have; and
+    /// the others. All keep their order.
+    fn fans(&self, triangles: &[u32], known: &[Vec3]) -> (Vec<u32>, Vec<(Vec3, Vec<u32>)>) {
+        let own = |t: u32| self.corners[t as usize].into_iter().filter(|corner| !known.contains(corner));
+        let mut number_of: HashMap<[u32; 3], usize> = HashMap::new();
+        for corner in triangles.iter().flat_map(|&t| own(t)) {
+            *number_of.entry(key(corner)).or_default() += 1;
         }
-        match (of_a.second, of_b.second) {
-            (None, None) => {
-                let [of_a, of_b] = [of_a, of_b].map(|node| &self.members[node.members.clone()]);
-                meeting(corners, of_a, of_b)
+        number_of.retain(|_, number| *number > MANY);
+        let (mut single, mut fans) = (Vec::new(), Vec::<(Vec3, Vec<u32>)>::new());
+        let mut place_of: HashMap<[u32; 3], usize> = HashMap::new();
+        for &t in triangles {
+            let number = |corner: &Vec3| number_of.get(&key(*corner)).copied();
+            let Some(apex) = own(t).filter(|corner| number(corner).is_some()).max_by_key(number) else {
+                single.push(t);
+                continue;
+            };
+            let place = *place_of.entry(key(apex)).or_insert(fans.len());
+            if place == fans.len() {
+                fans.push((apex, Vec::new()));
             }
-            // The one with more triangles is divided.
-            (Some(second), _) if of_b.second.is_none() || of_a.members.len() >= of_b.members.len() => {
-                self.pairs_between(corners, a + 1, b) + self.pairs_between(corners, second, b)
-            }
-            (_, Some(second)) => {
-                self.pairs_between(corners, a, b + 1) + self.pairs_between(corners, a, second)
-            }
-            (Some(_), None) => unreachable!("a node that is divided beside one that is not is divided first"),
+            fans[place].1.push(t);
         }
+        (single, fans)
     }
 }
 
-/// How many triangles of one set meet one of another.
-fn meeting(corners: &[[Vec3; 3]], of_a: &[u32], of_b: &[u32]) -> u64 {
-    let mut count = 0;
-    for &a in of_a {
-        let a = corners[a as usize];
-        let around = Around::of([a].into_iter());
-        for &b in of_b {
-            let b = corners[b as usize];
-            if around.meets(&Around::of([b].into_iter())) {
-                count += u64::from(meet_beyond_what_they_share(a, b));
-            }
-        }
+/// Pairs of places in a list of triangles, as pairs of triangles.
+struct Within<'a, 'b> {
+    count: &'a mut Count<'b>,
+    of: &'a [u32],
+}
+
+impl Visit for Within<'_, '_> {
+    fn look(&mut self) -> ControlFlow<()> {
+        self.count.look()
     }
-    count
+
+    fn meet(&mut self, a: u32, b: u32) -> ControlFlow<()> {
+        self.count.meet(self.of[a as usize], self.of[b as usize])
+    }
+}
+
+/// Where some triangles stand in a list that has them in the same order.
+fn places(list: &[u32], some: &[u32]) -> Vec<u32> {
+    let mut rest = list.iter().zip(0..);
+    let place = |t: &u32| rest.find(|(of, _)| *of == t).expect("it is one of them").1;
+    some.iter().map(place).collect()
+}
+
+/// Both zeros are one place.
+fn key(p: Vec3) -> [u32; 3] {
+    (p + 0.0).to_array().map(f32::to_bits)
 }

@@ -26,4 +26,4 @@ pub mod screen;
 mod server;
 
 pub use journal::random_hex;
-pub use server::{Limits, NoPublicUrl, PublicUrl, ServeError, Settings, serve};
+pub use server::{Limits, NoPublicUrl, PublicUrl, SHORTEST_TOKEN, ServeError, Settings, serve};

@@ -32,6 +32,10 @@ use std::time::Duration;
 use tokio::sync::Semaphore;
 use tower_http::set_header::SetResponseHeaderLayer;
 
+/// Bytes that a researcher's token has at least. Tries are not slowed down for whoever has the right one, so that it must not be found
+/// by trying.
+pub const SHORTEST_TOKEN: usize = 16;
+
 /// What is served, and where.
 #[derive(Debug, Clone)]
 pub struct Settings {
@@ -49,7 +53,7 @@ pub struct Settings {
     pub answers: PathBuf,
     /// Where to listen.
     pub address: SocketAddr,
-    /// What the researcher's page asks for.
+    /// What the researcher's page asks for: of at least [`SHORTEST_TOKEN`] bytes, else nobody is let in.
     pub admin_token: String,
     /// A code or an `https://` address for those who have finished.
     pub completion: Option<String>,

@@ -16,7 +16,10 @@ const MISSES: f64 = 0.05;
 /// Name, heading, unit, its factor, decimals, and where it stands.
 type Column = (&'static str, &'static str, &'static str, f64, usize, fn(&Counters) -> Option<f64>);
 
-const COLUMNS: [Column; 7] = [
+/// Told of programs alone.
+const OUTSIDE: &str = "outside_ms";
+
+const COLUMNS: [Column; 8] = [
     ("cpu_ms", "CPU time, {}", "ms", 1e3, 3, |c| c.cpu_s),
     ("page_faults", "Page faults", "", 1.0, 1, |c| c.page_faults.map(|n| n as f64)),
     ("context_switches", "Context switches", "", 1.0, 1, |c| c.context_switches.map(|n| n as f64)),
@@ -24,6 +27,7 @@ const COLUMNS: [Column; 7] = [
     ("cache_misses_k", "Cache misses, {}", "thousands", 1e-3, 3, |c| c.cache_misses.map(|n| n as f64)),
     ("branch_misses_k", "Wrong predictions, {}", "thousands", 1e-3, 3, |c| c.branch_misses.map(|n| n as f64)),
     ("energy_mj", "Energy, {}", "mJ", 1e3, 3, |c| c.energy_j),
+    (OUTSIDE, "From outside, {}", "ms", 1e3, 3, |c| c.outside_s),
 ];
 
 /// Medians of what was counted, by configuration; no row where nothing was.
@@ -35,6 +39,8 @@ pub(super) fn counted_table(run: &BenchRun) -> Table {
     let series = by_configuration(run);
     let told = |column: &&Column| series.iter().any(|(_, samples)| median(samples, column.5).is_some());
     let (there, missing): (Vec<&Column>, Vec<&Column>) = COLUMNS.iter().partition(told);
+    let has_programs = there.iter().any(|column| column.0 == OUTSIDE);
+    let missing: Vec<&Column> = missing.into_iter().filter(|column| column.0 != OUTSIDE).collect();
     let has_allocations = !run.allocations.is_empty();
     let asked = |id: &ConfigurationId, of: fn(&Allocations) -> f64| allocations_of(run, id).map(of);
     let mut table = Columns::over(&series)
@@ -64,6 +70,13 @@ pub(super) fn counted_table(run: &BenchRun) -> Table {
         table.notes.push(
             "Medians over the samples. CPU time, page faults and the CPU's counters are of all threads of the measuring process; context \
              switches of the one that extracts; energy of the whole package."
+                .into(),
+        );
+    }
+    if has_programs {
+        table.notes.push(
+            "From outside: of a program, from the request to its answer by our clock. The program reads its samples in that time. Its \
+             own time stands in the benchmark."
                 .into(),
         );
     }

@@ -71,7 +71,9 @@ impl Prepared<'_> {
             Recipe::Program(program) => self.by_program(program)?,
             Recipe::Meshes(files) => {
                 let path = files.get(&self.id.object).context("checked when the study was read")?;
-                let mesh = with_normals(mesh_file::read(path)?);
+                let mesh = mesh_file::read(path)?;
+                mesh_file::check_lies_in(&mesh, &self.grid).with_context(|| path.display().to_string())?;
+                let mesh = with_normals(mesh);
                 Made { counts: records::counts_of_mesh(&mesh, None), mesh, program: None }
             }
         })

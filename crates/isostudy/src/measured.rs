@@ -3,6 +3,7 @@
 use crate::prepare::Prepared;
 use crate::recipe::Recipe;
 use isostudy_bench::{AllocationCounts, Asked, Measured, PeakBytes, StageSeconds, Timed};
+use isostudy_design::record::Counters;
 use isostudy_program::{Answer, Program, Samples, Worker, write_samples};
 use std::collections::HashMap;
 use std::hint::black_box;
@@ -65,7 +66,8 @@ impl Measured for Clock<'_> {
                 // A program says how long it took, not what each stage did: it is all in one.
                 let geometry_s = answer.extraction_s.unwrap_or(answer.wall.as_secs_f64());
                 let stages = StageSeconds { sampling_s, geometry_s, ..StageSeconds::default() };
-                Ok(Timed { stages, ..Timed::default() })
+                let counters = Counters { outside_s: Some(answer.wall.as_secs_f64()), ..Counters::default() };
+                Ok(Timed { stages, counters })
             }
             _ => extractor(&prepared)?.time(threads),
         }

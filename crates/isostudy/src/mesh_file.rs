@@ -1,8 +1,10 @@
 //! Meshes in files: the format is what the name ends with.
 
 use crate::input;
-use anyhow::{Context, Result};
-use isostudy_mesh::{MeshFormat, TriangleMesh};
+use anyhow::{Context, Result, bail};
+use glam::DVec3;
+use isostudy_extract::BoxGrid;
+use isostudy_mesh::{Bounds, MeshFormat, TriangleMesh};
 use std::path::Path;
 
 const READ: [MeshFormat; 3] = [MeshFormat::Obj, MeshFormat::Ply, MeshFormat::Stl];
@@ -39,4 +41,41 @@ pub(crate) fn read(path: &Path) -> Result<TriangleMesh> {
     let named = || path.display().to_string();
     let format = format_to_read(path).with_context(named)?;
     format.read(input::open(path)?).with_context(named)
+}
+
+/// Checks that a mesh lies in the box of an object, or at most a cell beyond it, as a program's has to.
+///
+/// # Errors
+/// The first vertex that does not, and how much larger or smaller than the box the mesh is: then its unit is another.
+pub(crate) fn check_lies_in(mesh: &TriangleMesh, grid: &BoxGrid) -> Result<()> {
+    let BoxGrid { bounds: Bounds { min, max }, spacing } = *grid;
+    let beyond = f64::from(spacing) * (1.0 + 1e-6);
+    let (low, high) = (min.as_dvec3() - beyond, max.as_dvec3() + beyond);
+    let is_in = |p: DVec3| p.cmpge(low).all() && p.cmple(high).all();
+    let Some((vertex, p)) = mesh.positions.iter().enumerate().find(|(_, p)| !is_in(p.as_dvec3())) else {
+        return Ok(());
+    };
+    let size = |points: &mut dyn Iterator<Item = DVec3>| {
+        let (low, high) =
+            points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        (high - low).max_element()
+    };
+    let times = size(&mut mesh.positions.iter().map(|p| p.as_dvec3())) / size(&mut [low, high].into_iter());
+    let unit = match times {
+        _ if !times.is_finite() => String::new(),
+        _ if times > 2.0 => {
+            format!(" The mesh is {times:.3e} times as large as that box: its unit is another.")
+        }
+        _ if times < 0.1 => {
+            format!(" The mesh is {times:.3e} times as large as that box: its unit may be another.")
+        }
+        _ => String::new(),
+    };
+    bail!(
+        "vertex {vertex} lies at {:?}, more than a cell beyond the object's box, {:?} to {:?}: coordinates are in the object's \
+         unit.{unit}",
+        p.to_array(),
+        min.to_array(),
+        max.to_array()
+    )
 }

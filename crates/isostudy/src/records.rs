@@ -115,6 +115,8 @@ fn distribution(d: &isostudy_mesh::distribution::Distribution) -> Distribution {
     same_fields!(d => Distribution { count, mean, sd, min, q05, q25, median, q75, q95, max; and histogram: histogram })
 }
 
+const _: () = assert!(isostudy_design::record::MOST_INTERSECTIONS == isostudy_mesh::MOST_INTERSECTIONS);
+
 /// `t` is the mesh's.
 pub(crate) fn topology(t: &isostudy_mesh::topology::TopologyReport, mesh: &TriangleMesh) -> Topology {
     same_fields!(t => Topology {

@@ -1,7 +1,7 @@
 //! Whether a run that was read from a file can have been measured.
 
 use super::stage::Stage;
-use super::{BenchRun, BenchSample, LoadWindow};
+use super::{BenchRun, BenchSample, Counters, LoadWindow};
 use crate::method::ConfigurationId;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -206,7 +206,8 @@ impl BenchSample {
         if let Some(seconds) = self.reference_s.filter(|seconds| !(valid(*seconds) && *seconds > 0.0)) {
             return Err(InvalidSample::Reference(seconds));
         }
-        let counted = [("cpu_s", self.counters.cpu_s), ("energy_j", self.counters.energy_j)];
+        let Counters { cpu_s, energy_j, outside_s, .. } = self.counters;
+        let counted = [("cpu_s", cpu_s), ("energy_j", energy_j), ("outside_s", outside_s)];
         let mut counted = counted.into_iter().filter_map(|(what, value)| Some((what, value?)));
         if let Some((what, value)) = counted.find(|(_, value)| !valid(*value)) {
             return Err(InvalidSample::Counter { what, value });
@@ -227,7 +228,7 @@ impl BenchSample {
 mod tests {
     use super::*;
     use crate::machine::{CpuProfile, Machine};
-    use crate::record::{Counters, PeakMemory};
+    use crate::record::PeakMemory;
 
     fn sample(id: &str, iteration: u32) -> BenchSample {
         BenchSample {

@@ -6,7 +6,7 @@ use crate::liking::{Liking, Top};
 use crate::mesh_set::{MeshSet, known};
 use isostudy_design::config::ObjectSection;
 use isostudy_design::record::{BenchRun, Distribution, MeshRecord, Purpose, StoredTimes};
-use isostudy_design::{ConfigurationId, Method, MethodId, Stage, Study};
+use isostudy_design::{ConfigurationId, Method, MethodId, Stage};
 use isostudy_statistics::interval::LEVEL;
 use isostudy_statistics::median;
 use isostudy_timing::{ASSUMED_NOISE, NoiseFloor};
@@ -70,8 +70,8 @@ impl Stored {
         let whole = median(times.whole_s.clone(), LEVEL);
         Self {
             whole_s: whole.map(|of| beyond_noise(Estimate::within(of.median, of.interval), noise)),
-            chunks: Each::of(per_chunk(times.timed, &times.chunk_s)),
-            edits: Each::of(times.edit_s.clone()),
+            chunks: Each::of(per_chunk(times.timed, &times.chunk_s), noise),
+            edits: Each::of(times.edit_s.clone(), noise),
         }
     }
 }
@@ -79,17 +79,23 @@ impl Stored {
 /// Times of the same pieces of work, one after the other, and their median.
 pub struct Each {
     times_s: Vec<f64>,
+    /// The logarithm by which two runs may differ.
+    noise: f64,
     /// Median in seconds.
     pub median_s: Estimate,
 }
 
 impl Each {
-    fn of(times_s: Vec<f64>) -> Option<Self> {
+    fn of(times_s: Vec<f64>, noise: Option<f64>) -> Option<Self> {
         let found = median(times_s.clone(), LEVEL)?;
-        Some(Self { times_s, median_s: Estimate::within(found.median, found.interval) })
+        Some(Self {
+            times_s,
+            noise: noise.unwrap_or(ASSUMED_NOISE),
+            median_s: Estimate::within(found.median, found.interval),
+        })
     }
 
-    /// Whether the median ratio of a piece's two times may be 1; `None` where there are more pieces of one than of the other, so that they
+    /// Whether the median ratio of a piece's two times may be 1 in another run; `None` where there are more pieces of one than of the other, so that they
     /// are not the same.
     pub fn may_equal(&self, other: &Self) -> Option<bool> {
         if self.times_s.len() != other.times_s.len() {
@@ -98,7 +104,8 @@ impl Each {
         let ratios = self.times_s.iter().zip(&other.times_s).map(|(a, b)| a / b).collect();
         let found = median(ratios, LEVEL)?;
         let of = Estimate::within(found.median, found.interval);
-        Some(of.low <= 1.0 && 1.0 <= of.high)
+        let noise = self.noise.max(other.noise).exp();
+        Some(of.low <= noise && 1.0 / noise <= of.high)
     }
 }
 
@@ -145,7 +152,7 @@ pub fn candidates<'a>(inputs: &Inputs<'a>, likings: &[Liking]) -> Vec<ObjectCand
     let study = inputs.study;
     let meshes = MeshSet::of(inputs, Purpose::Benchmark);
     let noise = inputs.bench.map(NoiseFloor::of);
-    let is_compared = |method: &&Method| method.apart.is_none() && !is_repeated(study, method);
+    let is_compared = |method: &&Method| method.apart.is_none() && !study.is_repeated(method.id);
     let methods: Vec<&Method> = study.methods.iter().filter(is_compared).collect();
     let of_object = |(place, object): (usize, &'a ObjectSection)| {
         let liking = likings.iter().find(|of| of.object == Some(place));
@@ -159,8 +166,10 @@ pub fn candidates<'a>(inputs: &Inputs<'a>, likings: &[Liking]) -> Vec<ObjectCand
                 method,
                 mesh,
                 time_s: inputs.bench.zip(noise.as_ref()).and_then(|(run, noise)| time(run, noise, &id)),
-                chunks: chunks.and_then(|times| Each::of(per_chunk(times.timed, &times.chunk_s))),
-                edits: chunks.and_then(|times| Each::of(times.edit_s.clone())),
+                chunks: chunks.and_then(|times| {
+                    Each::of(per_chunk(times.timed, &times.chunk_s), of_total(noise.as_ref(), &id))
+                }),
+                edits: chunks.and_then(|times| Each::of(times.edit_s.clone(), of_total(noise.as_ref(), &id))),
                 stored: stored.map(|times| Stored::of(times, of_total(noise.as_ref(), &id))),
                 memory: inputs
                     .bench
@@ -187,11 +196,6 @@ pub fn candidates<'a>(inputs: &Inputs<'a>, likings: &[Liking]) -> Vec<ObjectCand
     };
     let all = study.file.objects.iter().enumerate().map(of_object);
     all.filter(|of| !of.candidates.is_empty()).collect()
-}
-
-fn is_repeated(study: &Study, method: &Method) -> bool {
-    let earlier = study.methods.iter().take_while(|other| other.id != method.id);
-    earlier.into_iter().any(|other| other.recipe == method.recipe && other.budget == method.budget)
 }
 
 /// The median of the run's times. What other runs may differ by is in its ends: two times of which neither interval is beyond the other

@@ -122,14 +122,21 @@ fn of_those_not_told_apart_in_time_the_closest_is_taken() {
 /// Places differ a hundredfold, methods by a few per cent; what is asked of all at one place is compared there.
 #[test]
 fn chunks_and_edits_are_compared_one_by_one() {
+    // Runs of one program may differ by 5 %, where nobody measured by how much.
+    for (third, alike) in [(1.06, None), (1.04, Some(2))] {
+        one_by_one(third, alike);
+    }
+}
+
+fn one_by_one(third: f64, alike: Option<usize>) {
     let all = planted(&[[10.0, 0.1], [5.0, 0.4], [20.0, 0.3], [6.0, 0.2], [8.0, 0.2], [30.0, 0.05]]);
     let ids = all.study.method_ids();
     let place = |i: usize| 1e-4 * 1.6f64.powi(i as i32);
-    // The second is as fast as the first, here and there; the third is slower by 5 % everywhere; the others by half.
+    // The second is as fast as the first, here and there; the third is slower everywhere; the others by half.
     let share = |method: usize, i: usize| match method {
         0 => 1.0,
         1 => [0.99, 1.01, 1.001, 0.998][i % 4],
-        2 => 1.05,
+        2 => third,
         _ => 1.5,
     };
     let mut chunks = Vec::new();
@@ -158,7 +165,11 @@ fn chunks_and_edits_are_compared_one_by_one() {
             panic!("{goal:?}: one on all objects")
         };
         assert_eq!((pick.method.id, pick.on.len()), (ids[0], 3), "{goal:?}: of two alike the closer");
-        assert_eq!(pick.on[0].alike, [ids[1]], "{goal:?}");
+        assert_eq!(
+            pick.on[0].alike,
+            alike.map_or(vec![ids[1]], |third| vec![ids[1], ids[third]]),
+            "{goal:?}"
+        );
         let middle = 1e3 * (place(4) + place(5)) / 2.0;
         assert!((pick.on[0].value.value - middle).abs() < 1e-9, "{goal:?}: {}", pick.on[0].value.value);
     }

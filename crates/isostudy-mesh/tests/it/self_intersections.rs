@@ -1,7 +1,7 @@
 //! Pairs of triangles that pass through each other: counted by hand, by all pairs, and none where there are none.
 
 use isostudy_mesh::glam::{Mat3, Vec3};
-use isostudy_mesh::{MeshError, TriangleMesh, self_intersections};
+use isostudy_mesh::{MOST_INTERSECTIONS, MeshError, TriangleMesh, self_intersections};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -122,4 +122,83 @@ fn what_is_no_mesh_is_refused() {
     assert!(matches!(self_intersections(&broken), Err(MeshError::IndexOutOfRange { .. })));
     broken.triangles.clear();
     assert!(self_intersections(&broken).is_err());
+}
+
+/// By looking at every pair alone: no tree, no fan, no book.
+fn one_by_one(triangles: &[[Vec3; 3]]) -> u64 {
+    let pairs = (0..triangles.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    pairs.map(|(i, j)| count(&[triangles[i], triangles[j]])).sum()
+}
+
+/// Round one corner, round one side, long and thin, lying on each other, and all of that in one soup: as many as pair by pair.
+#[test]
+fn fans_books_slivers_and_sheets_are_counted_as_pair_by_pair() {
+    let mut random = Pcg64Mcg::seed_from_u64(7);
+    let mut seen = [0; 5];
+    for round in 0..40 {
+        // A coarse lattice of places makes ties: corners on sides, sides on planes, triangles twice.
+        let places = if round % 2 == 0 { 5.0 } else { 4096.0 };
+        let mut point =
+            || Vec3::from_array(std::array::from_fn(|_| (random.random::<f32>() * places).floor() / places));
+        let [apex, end] = [point(), point()];
+        let fan: Vec<[Vec3; 3]> = (0..70).map(|_| [point(), apex, point()]).collect();
+        let book: Vec<[Vec3; 3]> = (0..70).map(|_| [end, point(), apex]).collect();
+        let slivers: Vec<[Vec3; 3]> = (0..70)
+            .map(|_| {
+                let [a, b] = [point(), point()];
+                [a, b, b + 0.001 * (point() - b)]
+            })
+            .collect();
+        let sheets: Vec<[Vec3; 3]> = (0..70)
+            .map(|i| [point(), point(), point()].map(|p| Vec3::new(p.x, p.y, (i % 2) as f32)))
+            .collect();
+        let all = [&fan[..30], &book[..40], &slivers[..30], &sheets[..30], &fan[..5]].concat();
+        for (kind, triangles) in [fan, book, slivers, sheets, all].into_iter().enumerate() {
+            let found = count(&triangles);
+            assert_eq!(found, one_by_one(&triangles), "round {round}, kind {kind}");
+            seen[kind] += found;
+        }
+    }
+    assert!(seen.iter().all(|pairs| *pairs > 100), "{seen:?}");
+}
+
+/// Each would take minutes or hours if all pairs of boxes that meet were looked at.
+#[test]
+fn what_meets_in_boxes_alone_takes_no_time() {
+    let ring = |i: u32, of: u32| {
+        let (sin, cos) = (std::f32::consts::TAU * i as f32 / of as f32).sin_cos();
+        Vec3::new(cos, sin, 0.0)
+    };
+    let side = |i: u32, of: u32| [ring(i, of), ring((i + 1) % of, of)];
+    let cone = |tip: Vec3, of: u32| (0..of).map(move |i| [side(i, of)[0], side(i, of)[1], tip]);
+    let of = 64_000;
+    let one: Vec<[Vec3; 3]> = cone(Vec3::Z, of).collect();
+    assert_eq!(count(&one), 0);
+    // Through its middle, a triangle that crosses both sides, of a width that is known.
+    let across = [Vec3::new(-3.0, 0.1, 0.5), Vec3::new(3.0, 0.1, 0.5), Vec3::new(0.0, 9.0, 0.5)];
+    let crossed = count(&[&one[..], &[across]].concat());
+    // The cone's circle at this height has a radius of one half; above y = .1 lies this share of it.
+    let share = 1.0 - 2.0 * f64::asin(0.2) / std::f64::consts::PI;
+    assert!((crossed as f64 / (0.5 * f64::from(of) * share) - 1.0).abs() < 1e-3, "{crossed}");
+    // Pages of a book, of which none lies on another; and each twice.
+    let spine = [Vec3::new(0.0, 0.0, -1.0), Vec3::new(0.1, 0.0, 1.0)];
+    let book: Vec<[Vec3; 3]> = (0..of).map(|i| [spine[0], spine[1], 2.0 * ring(i, of)]).collect();
+    assert_eq!(count(&book), 0);
+    assert_eq!(count(&[&book[..], &book].concat()), u64::from(of));
+    let equal = vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 300_000];
+    assert_eq!(count(&equal), MOST_INTERSECTIONS);
+}
+
+/// Long triangles side by side along the diagonal, that boxes along the axes cannot tell apart: the search ends and says so.
+#[test]
+fn a_search_without_end_is_given_up() {
+    let diagonal = Vec3::ONE;
+    let slivers: Vec<[Vec3; 3]> = (0..60_000)
+        .map(|i| {
+            let from = Vec3::new(1.0, -1.0, 0.0) * (1e-6 * i as f32);
+            [from, from + diagonal, from + diagonal + Vec3::new(1e-7, -1e-7, 0.0)]
+        })
+        .collect();
+    let error = self_intersections(&soup(&slivers)).unwrap_err();
+    assert!(matches!(error, MeshError::Entangled { .. }), "{error:?}");
 }

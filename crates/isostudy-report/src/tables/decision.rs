@@ -205,7 +205,8 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> Vec<Stri
     notes.push(errors);
     if inputs.chunks.iter().any(|times| !times.edit_s.is_empty()) {
         notes.push(
-            "Chunks and edits are compared one by one: the interval of the median ratio has 1 in it, or not."
+            "Chunks and edits are compared one by one. Two methods are not distinguished if the interval of the median ratio, wider by the \
+             noise, has 1 in it."
                 .into(),
         );
     }
@@ -219,7 +220,7 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> Vec<Stri
     }
     let mut not = vec!["other objects, resolutions and machines"];
     if !is_liked {
-        not.push("what people like, since nobody's answers are here");
+        not.push("what people like (there are no answers)");
     }
     if !objects.iter().flat_map(|of| &of.candidates).any(|of| of.memory.is_some()) {
         not.push("memory");

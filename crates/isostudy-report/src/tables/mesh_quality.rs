@@ -2,7 +2,9 @@
 
 use crate::distribution::{STATISTICS, purpose_name};
 use crate::tables::parts::{PART, parts};
-use isostudy_design::record::{Distribution, MeshRecord, Purpose, Quality, Topology, Trilinear};
+use isostudy_design::record::{
+    Distribution, MOST_INTERSECTIONS, MeshRecord, Purpose, Quality, Topology, Trilinear,
+};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, known};
 use isostudy_table::{Cell, Columns, Table};
@@ -80,12 +82,19 @@ const TRUTHS_NOTE: &str = "The interpolant: the level set of the samples, interp
      otherwise: those in which the method joins what the interpolant keeps apart, or the other way round. Nothing stands where the \
      method's samples are not the corners of the cells, or it does not decide by cells.";
 
+/// Where meshes have too many intersections to be counted.
+const INTERSECTIONS_NOTE: &str = "Counting of intersecting pairs ends at 1,000,000: that number means at least as many. Nothing stands \
+     where triangles lie so close to each other that the search was given up.";
+
 /// Topology of the meshes at both spacings.
 pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
     let meshes = meshes(inputs);
     // What the samples' interpolant has, where some method's samples are those of cells.
     let has_regions = meshes.iter().any(|(_, mesh)| mesh.region.is_some());
     let has_truth = meshes.iter().any(|(_, mesh)| mesh.trilinear.is_some());
+    let is_uncounted = meshes
+        .iter()
+        .any(|(_, mesh)| mesh.topology.self_intersections.is_none_or(|pairs| pairs >= MOST_INTERSECTIONS));
     let count = |count: fn(&Topology) -> u64| {
         move |(_, mesh): &(Purpose, &MeshRecord)| Cell::count(count(&mesh.topology))
     };
@@ -138,5 +147,6 @@ pub(super) fn topology(inputs: &Inputs<'_>) -> Option<Table> {
         })
         .into_table("topology", "Topology of the meshes");
     table.notes.extend(has_truth.then(|| TRUTHS_NOTE.into()));
+    table.notes.extend(is_uncounted.then(|| INTERSECTIONS_NOTE.into()));
     table.unless_empty()
 }

@@ -78,14 +78,6 @@ impl Budgets {
         Ok(Duration::from_secs_f64((-left / self.per_second).max(0.0)))
     }
 
-    /// Gives one back that was taken.
-    pub(super) fn give_back(&self, address: IpAddr) {
-        if let Some(account) = self.all.lock().expect("nothing panics with it").of.get_mut(&network(address))
-        {
-            account.0 += 1.0;
-        }
-    }
-
     fn left(&self, left: f64, then: Instant, now: Instant) -> f64 {
         let back = now.saturating_duration_since(then).as_secs_f64() * self.per_second;
         (left + back).min(self.most)
@@ -111,8 +103,6 @@ mod tests {
         assert!(budgets.take(A, 0, after(0.4)).is_err());
         assert!((0..2).all(|_| budgets.take(A, 0, after(1.0)).is_ok()));
         assert!(budgets.take(A, 0, after(1.0)).is_err());
-        budgets.give_back(A);
-        assert!(budgets.take(A, 0, after(1.0)).is_ok());
         // Never more than at first.
         assert!((0..10).all(|_| budgets.take(A, 0, after(1000.0)).is_ok()));
         assert!(budgets.take(A, 0, after(1000.0)).is_err());

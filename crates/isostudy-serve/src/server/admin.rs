@@ -3,7 +3,7 @@
 
 use super::addresses::Peer;
 use super::api::{Failure, now_ms};
-use super::{Shared, Site};
+use super::{SHORTEST_TOKEN, Shared, Site};
 use crate::export::{self, HEADER};
 use crate::journal::Summary;
 use crate::log;
@@ -17,22 +17,16 @@ use std::time::Instant;
 pub(super) const PAGE: &str = include_str!("../../page/researcher.html");
 pub(super) const SCRIPT: &str = include_str!("../../page/researcher.js");
 
-/// Wrong tokens that may wait, half a second each, before one more is refused unseen.
+/// Wrong tokens of a client that may wait, half a second each, before one more is refused at once.
 const AHEAD: u32 = 10;
 
-/// Takes as long for a wrong token as for the right one. After ten wrong ones an address may try two a second: whatever it tries
-/// waits before it is looked at, so that nothing is gained by not waiting for the reply.
+/// The right token is accepted at once, whatever others of the same address try: it cannot be guessed
+/// ([`SHORTEST_TOKEN`](super::SHORTEST_TOKEN)), so that nothing is gained by delaying it. Wrong ones are counted by client. After ten,
+/// the reply to one more waits for half a second, and of many at a time most are refused at once.
 async fn authorised(site: &Shared, peer: Peer, headers: &HeaderMap) -> Result<(), Failure> {
-    let address = site.client(peer, headers);
-    let wait = site.tries.take(address, AHEAD, Instant::now());
-    let wait = wait.map_err(|wait| Failure::TooMany("too many wrong tokens came from this address", wait))?;
-    tokio::time::sleep(wait).await;
     let given = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
-    let given = given.and_then(|text| text.strip_prefix("Bearer ")).unwrap_or_default().as_bytes();
-    let token = site.settings.admin_token.as_bytes();
-    let different = given.iter().chain(std::iter::repeat(&0)).zip(token).fold(0, |all, (a, b)| all | (a ^ b));
-    if different == 0 && given.len() == token.len() && !token.is_empty() {
-        site.tries.give_back(address);
+    let given = given.and_then(|text| text.strip_prefix("Bearer ")).unwrap_or_default();
+    if is_token(given.as_bytes(), site.settings.admin_token.as_bytes()) {
         return Ok(());
     }
     let wrong = site.wrong_tokens.fetch_add(1, Ordering::Relaxed) + 1;
@@ -42,7 +36,16 @@ async fn authorised(site: &Shared, peer: Peer, headers: &HeaderMap) -> Result<()
             "somebody asked for the researcher's numbers with a wrong token ({wrong} since the start)"
         ));
     }
+    let wait = site.tries.take(site.client(peer, headers), AHEAD, Instant::now());
+    let wait = wait.map_err(|wait| Failure::TooMany("too many wrong tokens came from this address", wait))?;
+    tokio::time::sleep(wait).await;
     Err(Failure::Unauthorised)
+}
+
+/// Takes as long for a wrong token as for the right one.
+fn is_token(given: &[u8], token: &[u8]) -> bool {
+    let different = given.iter().chain(std::iter::repeat(&0)).zip(token).fold(0, |all, (a, b)| all | (a ^ b));
+    different == 0 && given.len() == token.len() && token.len() >= SHORTEST_TOKEN
 }
 
 /// `GET /api/admin/summary`.

@@ -11,7 +11,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use isostudy_serve::journal::Loss;
 use isostudy_serve::page::MediaFormat;
-use isostudy_serve::{Limits, Settings};
+use isostudy_serve::{Limits, SHORTEST_TOKEN, Settings};
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     /// Start although the folder holds fewer answers than it did
     #[arg(long)]
     accept_loss: bool,
-    /// What the researcher's page asks for, at least 12 characters [default: a new one, printed]
+    /// What the researcher's page asks for, at least 16 characters [default: a new one, printed]
     #[arg(long, value_name = "TOKEN", env = "ISOSTUDY_ADMIN_TOKEN", hide_env_values = true)]
     admin_token: Option<String>,
 }
@@ -63,7 +63,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         return Ok(Outcome::CheckFailed);
     };
     let admin_token = match &arguments.admin_token {
-        Some(token) if token.len() < 12 => bail!("--admin-token: at least 12 characters"),
+        Some(token) if token.len() < SHORTEST_TOKEN => {
+            bail!("--admin-token: at least {SHORTEST_TOKEN} characters")
+        }
         Some(token) => token.clone(),
         None => isostudy_serve::random_hex(16),
     };

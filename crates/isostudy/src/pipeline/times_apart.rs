@@ -40,8 +40,11 @@ impl Pipeline<'_> {
         time: impl Fn(&Prepared<'_>) -> Result<Option<T>>,
     ) -> Result<Vec<Stamp>> {
         let section = &self.study.file.benchmark;
-        let has_own_cubes = |c: &&Configuration| self.study.method(c.id.method).budget.is_none();
-        let selected: Vec<&Configuration> = self.selected(&[]).into_iter().filter(has_own_cubes).collect();
+        // Another look is the same work once more.
+        let is_timed = |c: &&Configuration| {
+            self.study.method(c.id.method).budget.is_none() && !self.study.is_repeated(c.id.method)
+        };
+        let selected: Vec<&Configuration> = self.selected(&[]).into_iter().filter(is_timed).collect();
         let step = Step::begin(name, selected.len(), selected.len());
         let machine = machine::read();
         let mut stamps = Vec::new();

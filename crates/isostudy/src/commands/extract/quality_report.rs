@@ -198,6 +198,12 @@ fn lost(points: u64) -> String {
 fn intersecting(pairs: Option<u64>) -> String {
     match pairs {
         Some(0) => "no triangle passes through another".to_owned(),
+        Some(isostudy_mesh::MOST_INTERSECTIONS) => {
+            format!(
+                "at least {} pairs of triangles that pass through each other",
+                isostudy_mesh::MOST_INTERSECTIONS
+            )
+        }
         Some(pairs) => format!("{} of triangles that pass through each other", counted(pairs, "pair")),
         None => "not counted".to_owned(),
     }
