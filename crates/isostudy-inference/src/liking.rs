@@ -6,6 +6,7 @@
 
 use crate::answered::Answered;
 use crate::hypotheses::{Hypothesis, On, Target};
+use crate::results::conclusions::is_too_few;
 use isostudy_design::contrast::Over;
 use isostudy_design::{Level, MethodId, Study};
 use isostudy_statistics::interval::{Interval, t_half_width};
@@ -94,6 +95,7 @@ impl Liking {
         let participants = Participants::of(items.len(), &own);
         let methods: Vec<MethodId> = items.iter().map(|&item| all[item]).collect();
         let found = scale(&participants, 0);
+        let level = if is_too_few(participants.number(), level) { f64::NEG_INFINITY } else { level };
         let shown = |a: usize, b: usize| match object {
             Some(object) => is_shown_on(study, &answered.hypotheses, object, [methods[a], methods[b]]),
             None => is_shown(Some(study), &answered.hypotheses, "", methods[a].as_str(), methods[b].as_str()),

@@ -7,6 +7,10 @@ use isostudy_statistics::ScoreTest;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// A smaller mean pull, of one answer in twenty, is none. Where people are of two camps, and each camp was dealt forms of its own, the forms
+/// leave a small pull that everybody shares and that no test of spread takes for chance.
+const SMALLEST: f64 = 0.05;
+
 /// From pairs seen in both orders of sides: each participant's mean pull to the left, what the items themselves are worth
 /// taken off, against zero as t. From controls: the exact sign-flip test of left against right. If there are both, the
 /// smaller p, doubled. Questions with a suspect key are left out.
@@ -51,7 +55,7 @@ pub(super) fn probe(audited: &Audited<'_>, stimuli: &Stimuli, suspects: &BTreeSe
 /// The mean pull to the left and its p; what there is if no pair or fewer than four people can tell.
 ///
 /// A participant's score is the mean, over the answers, of (x - the stimulus's mean over both orders), counted for the
-/// left side. Two orders were fitted, hence m - 2 degrees of freedom.
+/// left side. Two orders were fitted, hence m - 2 degrees of freedom. p is 1 where the pull is below [`SMALLEST`].
 fn pull(
     audited: &Audited<'_>,
     stimuli: &Stimuli,
@@ -81,7 +85,7 @@ fn pull(
     let mean = scores.iter().sum::<f64>() / m;
     let variance = scores.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>() / (m - 2.0);
     let t = mean.abs() / (variance / m).sqrt();
-    let p = match t.is_nan() {
+    let p = match t.is_nan() || mean.abs() < SMALLEST {
         true => 1.0,
         false => 2.0 * StudentsT::new(0.0, 1.0, m - 2.0).expect("m - 2 > 0").sf(t),
     };

@@ -11,6 +11,7 @@ use crate::hypotheses::{self, Conclusion as Tested, Hypothesis};
 use crate::liking::{self, Liking, Order};
 use crate::prediction::Prediction;
 use crate::results::Preferences;
+use crate::scale::GroupScale;
 use isostudy_design::contrast::Over;
 use isostudy_statistics::{Difference, FitError, Heterogeneity, Participants, heterogeneity};
 
@@ -157,6 +158,7 @@ impl Conclusions {
         for (place, of) in preferences.scales.iter().enumerate().filter(|(_, of)| of.group.items.len() > 2) {
             let verdict = match &of.scale {
                 Err(reason) => Verdict::NotJudged(Why::NoEstimate(*reason)),
+                Ok(_) if is_too_few(people(of), level) => Verdict::NotJudged(Why::TooFew),
                 Ok(scale) if scale.fit.penalised() => Verdict::NotJudged(Why::Separated),
                 Ok(scale) => {
                     let is_shown =
@@ -287,6 +289,17 @@ fn contrast(preferences: &Preferences<'_>, place: usize, row: &Row, limits: &[Li
     Conclusion { about: About::Contrast(place), verdict, limits }
 }
 
+/// Whether no outcome of so many people is significant by the exact sign-flip test, all of one mind included. A test by the spread
+/// between so few is no better.
+pub(crate) fn is_too_few(people: u64, level: f64) -> bool {
+    people == 0 || 2.0_f64.powi(1 - people as i32) > level
+}
+
+/// Who answered a group's questions.
+fn people(of: &GroupScale<'_>) -> u64 {
+    Participants::of(of.group.items.len(), &of.group.ballots).number()
+}
+
 /// The top of a group's scale; none where nothing bounds the worths and tests about two items do not take it apart from everybody.
 fn top(preferences: &Preferences<'_>, place: usize, level: f64, limits: &[Limit]) -> Option<Conclusion> {
     let of = &preferences.scales[place];
@@ -294,6 +307,7 @@ fn top(preferences: &Preferences<'_>, place: usize, level: f64, limits: &[Limit]
     let is_shown = |a: usize, b: usize| {
         liking::is_shown(preferences.study, &preferences.hypotheses, &of.group.name, &items[a], &items[b])
     };
+    let level = if is_too_few(people(of), level) { f64::NEG_INFINITY } else { level };
     let Order { best, alike } = Order::of(scale, level, &is_shown);
     if scale.fit.penalised() && !alike.is_empty() {
         return None;

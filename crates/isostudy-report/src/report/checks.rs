@@ -120,10 +120,10 @@ fn broken_by(flag: Flag) -> &'static str {
 pub(super) fn without_them(of: &WithoutBreakers, all: usize) -> String {
     let broken = of.people.len();
     if !of.leaves_somebody() {
-        let who = if broken == all {
-            format!("All {}", people(all))
-        } else {
-            format!("{broken} of {}", people(all))
+        let who = match broken == all {
+            true if all == 2 => "Both people".into(),
+            true => format!("All {}", people(all)),
+            false => format!("{broken} of {}", people(all)),
         };
         return format!("{who} broke a rule of screening, so that nobody is left to compare them with.");
     }

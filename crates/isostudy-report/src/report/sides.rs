@@ -169,6 +169,8 @@ pub(super) fn in_both_orders(evidence: &Evidence<'_>) -> String {
 pub(super) fn favoured(sides: &Sides<'_>) -> Option<String> {
     let widest = sides.with(SideDesign::Counterbalanced).max_by_key(|of| of.group.ballots.len())?;
     let (side, by) = match widest.bonus? {
+        // What nobody could see in the number is not said.
+        SideBonus::AtLeast(SideBound { at_least, .. }) if at_least < 0.005 => return None,
         SideBonus::AtLeast(SideBound { side, at_least }) => {
             (names::side(side), format!("at least {}", number(at_least, 2)))
         }

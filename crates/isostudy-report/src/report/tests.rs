@@ -516,3 +516,18 @@ fn the_main_finding_is_one_sentence() {
     assert!(told.starts_with("People preferred ") && told.ends_with('.'), "{told}");
     assert!(!told.trim_end_matches('.').contains(". "), "{told}");
 }
+
+/// Every pair stood on one side alone, and everybody pressed right, beside two of the same too: what is said first is the side.
+#[test]
+fn where_the_side_may_have_made_everything_it_is_told_first() {
+    let asked = [(0, 0), (0, 1), (1, 2), (0, 2), (1, 1)];
+    let of_person = |person| {
+        let places = asked.into_iter().enumerate();
+        places.map(move |(question, (left, right))| ShownBallot::new(person, question, [left, right], Right))
+    };
+    let mut groups = groups(&[]);
+    groups[0].ballots = (0..12).flat_map(of_person).collect();
+    let report = report_of("Trees", &groups);
+    let said = found(&report);
+    assert!(said.starts_with("People favour a side"), "{said}");
+}

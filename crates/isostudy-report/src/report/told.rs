@@ -32,8 +32,13 @@ pub(crate) fn sentences(preferences: &Preferences<'_>, results: Option<&Results<
         true => [liked, scale, pairs, objects],
         false => [pairs, objects, scale, liked],
     };
-    let rest = [told.weights(), told.side(), told.spread(), told.screening(), told.prediction()];
-    first.into_iter().chain(rest).flatten().collect()
+    // Where the side may have made every preference, nothing tells more.
+    let whole = told.whole();
+    let hidden = Verdict::NotJudged(Why::Side);
+    let is_hidden = !whole.is_empty() && whole.iter().all(|(_, verdict)| **verdict == hidden);
+    let (before, after) = if is_hidden { (told.side(), None) } else { (None, told.side()) };
+    let rest = [told.weights(), after, told.spread(), told.screening(), told.prediction()];
+    before.into_iter().chain(first.into_iter().chain(rest).flatten()).collect()
 }
 
 /// The first sentence: the main finding.
@@ -108,9 +113,12 @@ impl Told<'_, '_> {
             _ => in_sentences("People", &holding),
         };
         if !equal.is_empty() {
-            text.push_str(&format!(" Within the margin people like these alike: {}.", named(&equal)));
+            let more = equal.len().saturating_sub(NAMED);
+            let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
+            let pairs = equal[..equal.len() - more].join("; ");
+            text.push_str(&format!(" Within the margin people like these alike: {pairs}{rest}."));
         }
-        Some(text.trim().to_owned())
+        (!text.is_empty()).then(|| text.trim().to_owned())
     }
 
     /// Where the scale shows a difference and no test of a pair does, because people gave different numbers of answers.
@@ -281,7 +289,10 @@ fn best_at(results: &Results<'_>, goal: Goal) -> Option<String> {
             Verdict::Best { best, tied, .. } if tied.is_empty() => label(results.inputs.study, best),
             Verdict::Best { is_everybody: true, .. } => "not decided".into(),
             Verdict::Best { best, tied, .. } => {
-                let all: Vec<&String> = std::iter::once(best).chain(tied).collect();
+                // In the study's order: the same set on two objects is told once.
+                let is_in = |id: &str| best == id || tied.iter().any(|of| of == id);
+                let ids = results.inputs.study.methods.iter().map(|method| method.id.as_str());
+                let all: Vec<&str> = ids.filter(|id| is_in(id)).collect();
                 format!("not distinguished are {}", named(&all))
             }
             _ => continue,

@@ -74,6 +74,9 @@ fn one_scale(
             )
         }
         Verdict::NotJudged(Why::NoEstimate(reason)) => format!("One scale of {whose}: {reason}."),
+        Verdict::NotJudged(Why::TooFew) => {
+            format!("On one scale of {whose} no difference can be shown by so few people.")
+        }
         Verdict::NotJudged(_) => format!(
             "On one scale of {whose} no difference can be tested, because some items never won against the others, or a side always \
              did. The positions in the tables come from half a win added each way."

@@ -188,8 +188,8 @@ fn cost(pick: &Pick<'_>, is_busy: bool) -> String {
 /// How it was measured, and what is not compared: a note for each quantity.
 fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> Vec<String> {
     let mut notes = vec![
-        "Two methods are not distinguished if their intervals at 95 % meet. Of those, and within 5 % of the best, one stands first: for a \
-         time the one with the smallest mean error, for an error the fastest."
+        "Two methods are not distinguished if their intervals at 95 % meet. Of those, and within 5 % of the best, one stands first. For \
+         a time it is the one with the smallest mean error, for an error the fastest."
             .into(),
     ];
     notes.extend(inputs.bench.filter(|run| !run.samples.is_empty()).map(of_times));
