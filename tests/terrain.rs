@@ -452,11 +452,44 @@ fn readmes_prices_follow_from_what_was_published() {
     assert!(row("snapmc").contains(&format!("{least:.0} to {most:.0} % fewer than `mc`")), "{least} {most}");
     let [edges, of_cubes] = ["bu_dc-in-cell", "bu_mc"].map(|id| value("accuracy", id, "sharp_edges_mean"));
     let said = format!(
-        "{edges:.3} cube edges of error at the sharp edges of the building's block, where `mc` has {of_cubes:.2}"
+        "{edges:.3} cube edges of error at the sharp edges of the building, where `mc` has {of_cubes:.2}"
     );
     assert!(row("dc-in-cell").contains(&said), "{said}");
     let has_regions = csv_rows("topology")[0].contains_key("self_intersections_judged");
     let column = if has_regions { "self_intersections_judged" } else { "self_intersections" };
     let pairs = value("topology", "bu_dc-in-cell", column);
     assert!(row("dc-in-cell").contains(&format!("{pairs} pairs of triangles intersect there")), "{pairs}");
+}
+
+/// docs/terrain.md says how many people its questionnaire takes, as the command prints it.
+#[test]
+fn pages_say_how_many_people_find_a_preference() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let page = fs::read_to_string(root.join("docs/terrain.md")).unwrap();
+    let block = between(&page, "power");
+    let folder = Folder::new();
+    let config = root.join("configs/terrain.toml");
+    let run = |arguments: &[&str]| {
+        let all = ["design", "power", config.to_str().unwrap(), "--shares", "0.69", "--participants"];
+        folder.succeed(&[&all[..], arguments, &["--out", "power"]].concat());
+        let mut rows = csv::Reader::from_path(folder.path("power/power_by_kind.csv")).unwrap();
+        rows.deserialize().map(Result::unwrap).collect::<Vec<Row>>()
+    };
+    let (plain, by_side) = (run(&["36,54,72,252"]), run(&["36", "--side-bias", "1.5"]));
+    let kinds = [
+        ("two methods on all objects", "methods as a whole", "4"),
+        ("two methods on one object", "methods on one object", "1"),
+        ("two looks on the building", "methods as a whole", "1"),
+    ];
+    for (name, over, questions) in kinds {
+        let of = |rows: &[Row]| {
+            let own = |row: &&Row| row["over"] == over && row["questions"] == questions;
+            rows.iter().find(own).unwrap().clone()
+        };
+        let (plain, by_side) = (of(&plain), of(&by_side));
+        let mut cells: Vec<&str> = ["36", "54", "72", "252"].map(|n| &*plain[&format!("power_{n}")]).into();
+        cells.push(&by_side["power_36"]);
+        let line = format!("| {name} | {} |", cells.join(" | "));
+        assert!(block.contains(&line), "{line}");
+    }
 }
