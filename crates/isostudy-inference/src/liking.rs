@@ -6,7 +6,6 @@
 
 use crate::answered::Answered;
 use crate::hypotheses::{Hypothesis, On, Target};
-use crate::results::conclusions::is_too_few;
 use isostudy_design::contrast::Over;
 use isostudy_design::{Level, MethodId, Study};
 use isostudy_statistics::interval::{Interval, t_half_width};
@@ -197,6 +196,12 @@ fn most_joined(items: &[usize], pairs: &BTreeSet<[usize; 2]>) -> Vec<usize> {
         open.retain(|item| !set.contains(item));
     }
     items.to_vec()
+}
+
+/// Whether no outcome of so many people is significant by the exact sign-flip test, all of one mind included. A test by the spread
+/// between so few is no better.
+pub(crate) fn is_too_few(people: u64, level: f64) -> bool {
+    people == 0 || 2.0_f64.powi(1 - people as i32) > level
 }
 
 /// Whether a held test about these two themselves, over all answers, prefers the first. Items are methods, levels of a factor, or what

@@ -8,7 +8,7 @@ use crate::ballots::widest;
 use crate::decision::{Goal, Pick};
 use crate::glance::Row;
 use crate::hypotheses::{self, Conclusion as Tested, Hypothesis};
-use crate::liking::{self, Liking, Order};
+use crate::liking::{self, Liking, Order, is_too_few};
 use crate::prediction::Prediction;
 use crate::results::Preferences;
 use crate::scale::GroupScale;
@@ -287,12 +287,6 @@ fn contrast(preferences: &Preferences<'_>, place: usize, row: &Row, limits: &[Li
         limits.push(Limit::DependsOnObject);
     }
     Conclusion { about: About::Contrast(place), verdict, limits }
-}
-
-/// Whether no outcome of so many people is significant by the exact sign-flip test, all of one mind included. A test by the spread
-/// between so few is no better.
-pub(crate) fn is_too_few(people: u64, level: f64) -> bool {
-    people == 0 || 2.0_f64.powi(1 - people as i32) > level
 }
 
 /// Who answered a group's questions.
