@@ -135,6 +135,59 @@ fn nothing_leaves_the_drawing_and_no_text_stands_on_another() {
     }
 }
 
+/// A study with 27 methods and four objects, and records made up for it.
+fn large() -> Everything {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/terrain.toml");
+    let study = isostudy_design::Study::load(&path).unwrap();
+    let mut all = Everything::of(fixture::study());
+    let ids: Vec<_> = study.configurations.iter().map(|of| of.id.clone()).collect();
+    assert!(study.methods.len() == 27 && study.file.objects.len() == 4);
+    let known = all.meshes.iter().find(|mesh| mesh.purpose == isostudy_design::record::Purpose::Benchmark);
+    let known = known.unwrap().clone();
+    let of = all.bench.samples[0].id.clone();
+    let samples: Vec<_> = all.bench.samples.iter().filter(|sample| sample.id == of).cloned().collect();
+    all.meshes = ids
+        .iter()
+        .map(|id| isostudy_design::record::MeshRecord { id: id.clone(), ..known.clone() })
+        .collect();
+    all.bench.samples = ids
+        .iter()
+        .flat_map(|id| {
+            let with = |of: &isostudy_design::record::BenchSample| isostudy_design::record::BenchSample {
+                id: id.clone(),
+                ..of.clone()
+            };
+            samples.iter().map(with).collect::<Vec<_>>()
+        })
+        .collect();
+    all.study = study;
+    all
+}
+
+#[test]
+fn no_label_of_a_large_study_stands_on_another() {
+    let all = large();
+    let inputs = Inputs { answers: None, ..all.inputs() };
+    for sheet in [Sheet::Wide, Sheet::Narrow] {
+        let drafts = [
+            meshes::triangles(&inputs, sheet),
+            meshes::pass_times(&inputs, sheet),
+            meshes::radius_ratios(&inputs, sheet),
+            meshes::aspect_ratios(&inputs, sheet),
+            stages::stage_times(&inputs, sheet),
+            distributions::aspect_ratios(&inputs, sheet),
+        ];
+        for draft in drafts.into_iter().flatten() {
+            let (name, canvas) = (draft.name, draft.canvas);
+            assert_eq!(canvas.texts_on_texts(), Vec::new(), "{name}, {sheet:?}");
+            assert_eq!(canvas.lines_on_lines(), Vec::new(), "{name}, {sheet:?}");
+            assert_eq!(canvas.texts_outside(), Vec::<String>::new(), "{name}, {sheet:?}");
+            let [left, right] = canvas.reach();
+            assert!(left >= 0.0 && right <= sheet.width(), "{name}, {sheet:?}: {left} to {right}");
+        }
+    }
+}
+
 #[test]
 fn a_phone_shows_letters_as_large_as_those_of_its_pages() {
     let all = Everything::of(fixture::study());
