@@ -189,6 +189,24 @@ fn no_label_of_a_large_study_stands_on_another() {
 }
 
 #[test]
+fn no_two_methods_of_a_large_study_look_alike() {
+    let all = large();
+    let looks: Vec<style::Look> =
+        all.study.methods.iter().map(|method| style::look(&all.study, method.id)).collect();
+    for (i, look) in looks.iter().enumerate() {
+        // Marks differ in black and white as well.
+        let alike = looks[..i].iter().position(|of| (of.shape, of.filling) == (look.shape, look.filling));
+        assert_eq!(alike, None, "{}: {look:?}", all.study.methods[i].id);
+    }
+    let hue = |id: &str| {
+        let place = all.study.methods.iter().position(|method| method.id.to_string() == id);
+        looks[place.unwrap()].hue
+    };
+    assert!(hue("dc") == hue("dc-in-cell") && hue("dc") == hue("dca-matched"));
+    assert!(hue("bi") == hue("bir-matched") && hue("bi") != hue("dc") && hue("bi") != hue("si"));
+}
+
+#[test]
 fn a_phone_shows_letters_as_large_as_those_of_its_pages() {
     let all = Everything::of(fixture::study());
     for draft in drafts(&Results::of(&all.inputs()), Sheet::Narrow) {
@@ -216,8 +234,12 @@ fn methods_of_one_family_share_a_hue() {
         method.recipe = recipe;
         method.levels.fill(None);
     }
-    let looks: Vec<[usize; 2]> =
-        study.methods.iter().map(|method| style::hue_and_filling(&study, method.id)).collect();
+    let of = |method: &isostudy_design::Method| {
+        let look = style::look(&study, method.id);
+        assert_eq!(look.shape, look.hue);
+        [look.hue, look.filling]
+    };
+    let looks: Vec<[usize; 2]> = study.methods.iter().map(of).collect();
     assert_eq!(looks, [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [3, 0]]);
 }
 
