@@ -48,4 +48,5 @@ pub use tables::benchmark::of_objects as benchmark_of_objects;
 pub use tables::power::{power_sentences, power_tables};
 pub use tables::tables;
 pub use telling::{Telling, telling};
+pub use wants::named_by_choices;
 pub use without_study::answer_tables;

@@ -15,10 +15,14 @@ pub struct Telling {
 /// The object whose meshes differ most in their mean distance to the isosurface, and the two between which they do. Distances are
 /// in the spacing of the object's animations, so that a large object does not win by its size, nor one method by a finer mesh. The
 /// rule needs no answers, so a study opens on the same pair before people answer and after. Meshes of the animations alone count,
-/// since they are what is looked at. `None` of fewer than two meshes that differ.
+/// since they are what is looked at, and of them those of methods that are not set apart. `None` of fewer than two meshes that differ.
 pub fn telling(study: &Study, meshes: &[MeshRecord]) -> Option<Telling> {
     let of_object = |(place, object): (usize, &isostudy_design::config::ObjectSection)| {
-        let own = |mesh: &&MeshRecord| mesh.purpose == Purpose::Stimulus && mesh.id.object == object.id;
+        // What no choice names would win by what sets it apart.
+        let is_compared = |id: &ConfigurationId| study.method(id.method).apart.is_none();
+        let own = |mesh: &&MeshRecord| {
+            mesh.purpose == Purpose::Stimulus && mesh.id.object == object.id && is_compared(&mesh.id)
+        };
         let mut own: Vec<(f64, &ConfigurationId)> = meshes
             .iter()
             .filter(own)
@@ -43,13 +47,17 @@ mod tests {
     use crate::fixture::{self, Everything};
 
     fn with_distances(distances: &[(&str, f64)]) -> Option<Telling> {
+        with_distances_in(&fixture::study(), distances)
+    }
+
+    fn with_distances_in(study: &Study, distances: &[(&str, f64)]) -> Option<Telling> {
         let all = Everything::of(fixture::study());
         let mut meshes = all.meshes.clone();
         for mesh in meshes.iter_mut().filter(|mesh| mesh.purpose == Purpose::Stimulus) {
             let known = distances.iter().find(|(id, _)| mesh.id.to_string() == *id);
             mesh.accuracy.distance.mean = known.map_or(0.01, |(_, distance)| *distance);
         }
-        telling(&fixture::study(), &meshes)
+        telling(study, &meshes)
     }
 
     #[test]
@@ -65,6 +73,19 @@ mod tests {
         assert_eq!(found.object, 1);
         // Of those that are equally near, the study's first.
         assert_eq!(found.pair.map(|id| id.to_string()), [id(1, "bu"), id(1, "su")]);
+    }
+
+    #[test]
+    fn a_method_that_is_set_apart_is_not_shown_first() {
+        let mut study = fixture::study();
+        let object = study.file.objects[1].id.clone();
+        let [far, next] = ["su", "bp"].map(|method| format!("{object}_{method}"));
+        let distances = [(&far[..], 0.9), (&next[..], 0.5)];
+        let farthest = |study: &Study| with_distances_in(study, &distances).map(|of| of.pair[1].to_string());
+        assert_eq!(farthest(&study), Some(far.clone()));
+        let apart = study.methods.iter_mut().find(|method| method.id.to_string() == "su");
+        apart.expect("the paper's").apart = Some("it is given labels alone".into());
+        assert_eq!(farthest(&study), Some(next));
     }
 
     #[test]

@@ -1,12 +1,15 @@
 //! What somebody may want of a mesh, in words.
 
 use crate::region;
-use isostudy_design::Study;
+use isostudy_design::{MethodId, Study};
 use isostudy_inference::conclusions::{About, Verdict};
 use isostudy_inference::decision::{Goal, Pick};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::results::Results;
 use isostudy_timing::beside_other_work;
+
+/// Ties of more methods are counted, not named.
+pub(crate) const TIED: usize = 4;
 
 /// The words for a purpose.
 pub(crate) struct Words {
@@ -30,6 +33,21 @@ pub(crate) fn judged<'r, 'a>(results: &'r Results<'a>) -> Vec<&'r Pick<'a>> {
     };
     let picks = results.decision.picks.iter().enumerate();
     picks.filter(|(place, _)| is_judged(*place)).map(|(_, pick)| pick).collect()
+}
+
+/// The methods that the choices name, each once, in the order of the choices: the best, and those that are not told apart from it.
+pub fn named_by_choices(results: &Results<'_>) -> Vec<MethodId> {
+    let mut named: Vec<MethodId> = Vec::new();
+    for pick in judged(results) {
+        let alike =
+            pick.on.iter().filter(|best| best.alike.len() < TIED).flat_map(|best| best.alike.iter().copied());
+        for id in std::iter::once(pick.method.id).chain(alike) {
+            if !named.contains(&id) {
+                named.push(id);
+            }
+        }
+    }
+    named
 }
 
 /// Why times decide nothing, in a sentence; `None` where they do.

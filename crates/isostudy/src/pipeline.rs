@@ -45,6 +45,7 @@ use crate::store::{Inputs, Stamp, Store, Writer};
 use anyhow::{Context, Result};
 use isostudy_design::record::Purpose;
 use isostudy_design::{Configuration, ConfigurationId, Study};
+use pictures::Times;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard};
 
@@ -90,10 +91,11 @@ impl<'a> Pipeline<'a> {
         let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
         let stills = self.stills()?;
         let timings = self.timings(&PlanLength::Short)?;
-        let shown = self.shown_first(&meshes)?;
-        let pictures = self.pictures(&turntables, &shown)?;
         let chunks = self.chunk_times()?;
         let stored = self.stored_times()?;
+        let times = Times { whole: &timings, chunks: &chunks, stored: &stored };
+        let shown = self.shown_first(&meshes, &times)?;
+        let pictures = self.pictures(&turntables, &shown)?;
         let tables = self.tables(&meshes, &timings, [&chunks, &stored], &pictures, &shown)?;
         let viewer = self.viewer(&meshes, &shown)?;
         let made =

@@ -60,8 +60,12 @@ pub(super) struct BarPanel {
 const RIGHT: f64 = 10.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 40.0;
-/// How high a plot is on a narrow sheet.
+/// How high a plot is on a narrow sheet, and where a wide one has a panel an object.
 const PLOT: f64 = 200.0;
+/// From one label that reads upwards to the next, in ems: a line of the font, from ascenders to descenders.
+pub(super) const PITCH: f64 = 1.17;
+/// What a bar is wide at least where panels stand side by side, as the ends of its whisker are.
+const LEAST_BAR: f64 = 8.0;
 
 /// Room for an axis and what it is called.
 pub(super) fn room_for_labels(sheet: Sheet, axis: &Axis) -> f64 {
@@ -69,36 +73,60 @@ pub(super) fn room_for_labels(sheet: Sheet, axis: &Axis) -> f64 {
     sheet.length(80.0, widest + 32.0)
 }
 
-/// A canvas with a legend and rows of panels, each with its share of the width. On a narrow sheet they stand one below the other.
+/// A canvas with a legend and rows of panels, each with its share of the width. On a narrow sheet they stand one below the other, and
+/// on a wide one as few side by side as leave their labels room.
 pub(super) fn rows_of_panels(
     sheet: Sheet,
     legend: &[(Swatch, String)],
     rows: Vec<Vec<(f64, BarPanel)>>,
     row: f64,
 ) -> Canvas {
-    if !sheet.is_narrow() {
-        let (mut canvas, top) = canvas_with_legend(sheet, legend, row * rows.len() as f64);
-        for (place, panels) in rows.into_iter().enumerate() {
-            let (mut x, y) = (0.0, top + row * place as f64);
-            for (share, panel) in panels {
-                let right = x + share * sheet.width();
-                panel.draw(&mut canvas, (x, y), (right, y + row));
-                x = right;
-            }
-        }
-        return canvas;
-    }
     let width = sheet.width();
-    let panels = rows.into_iter().flatten().flat_map(|(_, panel)| panel.in_parts(sheet, width));
-    let panels: Vec<(f64, BarPanel)> =
-        panels.map(|panel| (TOP + PLOT + BOTTOM + panel.label_room(sheet, width), panel)).collect();
+    let has_room =
+        |panels: &[(f64, BarPanel)]| panels.iter().all(|(share, of)| !of.labels_touch(sheet, share * width));
+    let mut placed: Vec<(f64, Vec<(f64, BarPanel)>)> = Vec::new();
+    for panels in rows {
+        if !sheet.is_narrow() && has_room(&panels) {
+            placed.push((row, panels));
+            continue;
+        }
+        let parts = panels.into_iter().flat_map(|(_, panel)| panel.in_parts(sheet, width));
+        placed.extend(in_rows(sheet, parts.collect()));
+    }
     let (mut canvas, mut y) =
-        canvas_with_legend(sheet, legend, panels.iter().map(|(height, _)| height).sum());
-    for (height, panel) in panels {
-        panel.draw(&mut canvas, (0.0, y), (width, y + height));
+        canvas_with_legend(sheet, legend, placed.iter().map(|(height, _)| height).sum());
+    for (height, panels) in placed {
+        let mut x = 0.0;
+        for (share, panel) in panels {
+            let right = x + share * width;
+            panel.draw(&mut canvas, (x, y), (right, y + height));
+            x = right;
+        }
         y += height;
     }
     canvas
+}
+
+/// Panels in rows, as many side by side as have room, each row as high as the longest of its labels needs.
+fn in_rows(sheet: Sheet, panels: Vec<BarPanel>) -> Vec<(f64, Vec<(f64, BarPanel)>)> {
+    let width = sheet.width();
+    let fits = |columns: &usize| {
+        let width = width / *columns as f64;
+        let has_room = |of: &BarPanel| {
+            !of.labels_touch(sheet, width) && of.unit(of.plot_width(sheet, width)).1 >= LEAST_BAR
+        };
+        panels.iter().all(has_room)
+    };
+    let most = sheet.columns(panels.len());
+    let columns = (2..=most).rev().find(fits).unwrap_or(1);
+    // As evenly as they go.
+    let columns = panels.len().div_ceil(panels.len().div_ceil(columns).max(1)).max(1);
+    let share = 1.0 / columns as f64;
+    let row = |panels: &[BarPanel]| {
+        let labels = panels.iter().map(|of| of.label_room(sheet, share * width)).fold(0.0, f64::max);
+        (TOP + PLOT + BOTTOM + labels, panels.iter().map(|of| (share, of.clone())).collect())
+    };
+    panels.chunks(columns).map(row).collect()
 }
 
 /// The largest value that any bar of these shows, published marks and intervals included.
@@ -191,17 +219,17 @@ impl BarPanel {
         width - room_for_labels(sheet, &self.axis) - RIGHT
     }
 
+    /// Whether labels below the plot would stand on each other if they read upwards. `width` is the panel's.
+    fn labels_touch(&self, sheet: Sheet, width: f64) -> bool {
+        let (_, unit) = self.unit(self.plot_width(sheet, width));
+        let mut slots = self.clusters.iter().flat_map(|c| &c.slots);
+        slots.any(|slot| unit * (slot.bars.len() as f64 + 0.35) < PITCH * sheet.em())
+    }
+
     /// The panel, or its clusters in panels of their own on the same axis, or parts of clusters: such that labels below the plot do
     /// not touch.
     fn in_parts(self, sheet: Sheet, width: f64) -> Vec<Self> {
-        let room = self.plot_width(sheet, width);
-        let touch = |panel: &Self| {
-            let (_, unit) = panel.unit(room);
-            panel
-                .clusters
-                .iter()
-                .any(|c| c.slots.iter().any(|s| unit * (s.bars.len() as f64 + 0.35) < 1.15 * sheet.em()))
-        };
+        let touch = |panel: &Self| panel.labels_touch(sheet, width);
         if !touch(&self) {
             return vec![self];
         }

@@ -306,6 +306,23 @@ impl Canvas {
         found
     }
 
+    /// Pairs of texts that read upwards beside each other, the lines of which overlap: from ascenders to descenders.
+    pub(super) fn lines_on_lines(&self) -> Vec<(String, String)> {
+        let room = |shape: &Shape| {
+            let Shape::Text { text, at, em, upwards: true, .. } = shape else { return None };
+            let half = text_width(text, *em) / 2.0;
+            Some((text.clone(), [at.0 - 0.93 * em, at.0 + 0.24 * em, at.1 - half, at.1 + half]))
+        };
+        let all: Vec<(String, [f64; 4])> = self.shapes.iter().filter_map(room).collect();
+        let overlap = |a: [f64; 4], b: [f64; 4]| a[0] < b[1] && b[0] < a[1] && a[2] < b[3] && b[2] < a[3];
+        let pairs =
+            all.iter().enumerate().flat_map(|(i, one)| all[i + 1..].iter().map(move |two| (one, two)));
+        pairs
+            .filter(|(one, two)| overlap(one.1, two.1))
+            .map(|(one, two)| (one.0.clone(), two.0.clone()))
+            .collect()
+    }
+
     /// Texts that stick out of the drawing on any side.
     pub(super) fn texts_outside(&self) -> Vec<String> {
         let sticks_out = |shape: &Shape| {

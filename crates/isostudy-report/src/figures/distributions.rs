@@ -1,7 +1,7 @@
 //! Distributions of the two aspect ratios: a box a configuration.
 
 use super::axis::Axis;
-use super::bars::{frame, room_for_labels};
+use super::bars::{PITCH, frame, room_for_labels};
 use super::canvas::{Align, BLACK, Canvas, text_width};
 use super::draft::{Unfinished, canvas_with_legend};
 use super::sheet::Sheet;
@@ -14,6 +14,10 @@ use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::MeshSet;
 
 const ROW: f64 = 400.0;
+/// How high a row is of which each method has a part alone.
+const PART: f64 = 330.0;
+/// Room to the right of a plot.
+const RIGHT: f64 = 10.0;
 /// A box lower than this is a line.
 const FLAT: f64 = 5.0;
 
@@ -29,28 +33,42 @@ pub(super) fn aspect_ratios(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinis
     if meshes.is_empty() {
         return None;
     }
-    let objects: Vec<usize> = (0..inputs.study.file.objects.len()).collect();
-    let blocks = sheet.in_rows(&objects);
-    let (mut canvas, top) = canvas_with_legend(sheet, &[], 2.0 * ROW * blocks.len() as f64);
+    let study = inputs.study;
+    let methods = study.method_ids();
+    let objects: Vec<usize> = (0..study.file.objects.len()).collect();
+    // One scale a measure, so that objects can be compared.
+    let axes = MEASURES.map(|(_, of)| {
+        Axis::logarithmic(meshes.in_order().map(|(_, mesh)| of(mesh).q95).fold(1.0, f64::max))
+    });
+    // How many names stand beside each other under one of so many panels.
+    let room = |columns: usize| {
+        let taken = axes.iter().map(|axis| room_for_labels(sheet, axis)).fold(0.0, f64::max) + RIGHT;
+        ((sheet.width() / columns as f64 - taken) / (PITCH * sheet.em())) as usize
+    };
+    let usual = sheet.in_rows(&objects);
+    let widest = usual.iter().map(|row| row.len()).max().unwrap_or(1);
+    let columns = (1..=widest).rev().find(|&columns| methods.len() <= room(columns)).unwrap_or(1);
+    let blocks: Vec<&[usize]> = if columns == widest { usual } else { objects.chunks(columns).collect() };
+    let parts = if columns > 1 { 1 } else { methods.len().div_ceil(room(1).max(1)).max(1) };
+    let parts: Vec<&[MethodId]> = methods.chunks(methods.len().div_ceil(parts).max(1)).collect();
+    let height = if parts.len() > 1 { PART } else { ROW };
+    let rows = MEASURES.len() * parts.len() * blocks.len();
+    let (mut canvas, top) = canvas_with_legend(sheet, &[], height * rows as f64);
     let mut y = top;
     for block in blocks {
-        for (label, of) in MEASURES {
-            // One scale a row, so that objects can be compared.
-            let q95 = meshes.in_order().map(|(_, mesh)| of(mesh).q95).fold(1.0, f64::max);
-            let axis = Axis::logarithmic(q95);
-            let width = sheet.width() / block.len() as f64;
-            for (i, &object) in block.iter().enumerate() {
-                let boxes: Vec<(MethodId, Option<&Distribution>)> = inputs
-                    .study
-                    .method_ids()
-                    .into_iter()
-                    .map(|method| (method, meshes.at(object, method).map(of).filter(|d| d.count > 0)))
-                    .collect();
-                let x = width * i as f64;
-                let name = &inputs.study.file.objects[object].name;
-                panel(&mut canvas, inputs.study, &axis, label, name, &boxes, (x, y), (x + width, y + ROW));
+        for ((label, of), axis) in MEASURES.iter().zip(&axes) {
+            for part in &parts {
+                let width = sheet.width() / block.len() as f64;
+                for (i, &object) in block.iter().enumerate() {
+                    let distribution = |method| meshes.at(object, method).map(of).filter(|d| d.count > 0);
+                    let boxes: Vec<(MethodId, Option<&Distribution>)> =
+                        part.iter().map(|&method| (method, distribution(method))).collect();
+                    let x = width * i as f64;
+                    let name = &study.file.objects[object].name;
+                    panel(&mut canvas, study, axis, label, name, &boxes, (x, y), (x + width, y + height));
+                }
+                y += height;
             }
-            y += ROW;
         }
     }
     let caption = "Aspect ratios of the triangles, at the benchmark spacing. Box: quartiles and median; whiskers: 5 % and 95 %; \
@@ -71,7 +89,7 @@ fn panel(
     to: (f64, f64),
 ) {
     let em = canvas.sheet().em();
-    let (left, right) = (from.0 + room_for_labels(canvas.sheet(), axis), to.0 - 10.0);
+    let (left, right) = (from.0 + room_for_labels(canvas.sheet(), axis), to.0 - RIGHT);
     let name = |method: MethodId| style::name(study, method);
     let labels = boxes.iter().map(|(method, _)| text_width(&name(*method), em)).fold(0.0, f64::max);
     let (top, bottom) = (from.1 + 16.0, to.1 - 34.0 - labels);

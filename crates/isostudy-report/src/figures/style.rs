@@ -1,7 +1,8 @@
 //! Colours and fills: told apart by lightness as well as by hue (after Okabe and Ito 2008).
 //!
-//! Hue and lightness tell the level of the last factor, or the method of a study without factors; full, tinted or striped tells the
-//! level of the factor before. Stripes also tell the second stage or half of a bar.
+//! Hue and lightness tell the level of the last factor, or the family of a method in a study without factors; full, tinted or striped
+//! tells the level of the factor before, or the method within its family. Stripes also tell the second stage or half of a bar. A mark's
+//! shape goes with its hue, and tells methods of a family apart that has more of them than there are fillings.
 
 use super::canvas::{BLACK, Canvas, Colour, WHITE};
 use super::marks::{Filling, Mark};
@@ -125,54 +126,93 @@ pub(super) fn object_colour(object: usize) -> Colour {
     COLOURS[object % COLOURS.len()]
 }
 
-/// Methods of one family look alike: a hue, thus a shape, for each, and a filling for each of its methods. `None` where there
-/// are too many families, or too many methods in one.
-fn by_family(study: &Study, method: MethodId) -> Option<[usize; 2]> {
-    // Two lattices of tetrahedra are two families.
-    let family = |of: &isostudy_design::Method| {
-        let arrangement = of.recipe.settings.get("arrangement").and_then(|value| value.as_str());
-        (of.recipe.kind.clone(), arrangement.map(str::to_owned))
-    };
-    let mut families: Vec<((String, Option<String>), usize)> = Vec::new();
-    let mut own = None;
-    for of in &study.methods {
-        let name = family(of);
-        let place = families.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {
-            families.push((name, 0));
-            families.len() - 1
-        });
-        if of.id == method {
-            own = Some([place, families[place].1]);
-        }
-        families[place].1 += 1;
-    }
-    let fits = families.len() <= HUES.len() && families.iter().all(|(_, methods)| *methods <= FILLINGS);
-    own.filter(|_| fits && families.len() > 1)
+/// How a method looks: its hue and filling, wherever it is drawn, and the shape of its mark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Look {
+    pub(super) hue: usize,
+    pub(super) filling: usize,
+    pub(super) shape: usize,
 }
 
-/// Which hue and which filling a method has: by its levels, else by its family, else by place. No two of up to 24 methods of a
-/// study have both in common.
-pub(super) fn hue_and_filling(study: &Study, method: MethodId) -> [usize; 2] {
+impl Look {
+    /// A hue has its own shape, as long as its fillings last.
+    fn of(hue: usize, filling: usize) -> Self {
+        let hue = hue % HUES.len();
+        Self { hue, filling: filling % FILLINGS, shape: hue }
+    }
+}
+
+/// What methods have in common that look alike. Two lattices of tetrahedra are two families.
+fn family(of: &isostudy_design::Method) -> (&str, Option<&str>) {
+    let arrangement = of.recipe.settings.get("arrangement").and_then(|value| value.as_str());
+    (&of.recipe.kind, arrangement)
+}
+
+/// Methods of one family share a hue, and its shape as long as the fillings of that last; the others of a large family have what
+/// shapes and fillings are left, so that marks differ without their hues too. `None` where all methods are one family.
+fn by_family(study: &Study, method: MethodId) -> Option<Look> {
+    let mut families = Vec::new();
+    for of in &study.methods {
+        if !families.contains(&family(of)) {
+            families.push(family(of));
+        }
+    }
+    if families.len() < 2 {
+        return None;
+    }
+    let hues: Vec<usize> = study
+        .methods
+        .iter()
+        .map(|of| families.iter().position(|known| *known == family(of)).unwrap_or(0) % HUES.len())
+        .collect();
+    let mut looks: Vec<Option<Look>> = vec![None; hues.len()];
+    // Those with the shape of their hue first, so that no large family takes another's.
+    for shapes in [1, HUES.len()] {
+        for place in 0..hues.len() {
+            let hue = hues[place];
+            let mut free = (0..shapes * FILLINGS)
+                .map(|n| Look { shape: (hue + n / FILLINGS) % HUES.len(), ..Look::of(hue, n) });
+            let is_mark = |look: &Look, of: &Look| (look.shape, look.filling) == (of.shape, of.filling);
+            let is_free = |look: &Look| !looks.iter().flatten().any(|of| is_mark(look, of));
+            if looks[place].is_none() {
+                looks[place] = free.find(is_free);
+            }
+        }
+    }
+    // More methods than marks: hues tell them apart as far as they go.
+    for place in 0..hues.len() {
+        let hue = hues[place];
+        let mut all = (0..HUES.len() * FILLINGS)
+            .map(|n| Look { shape: (hue + n / FILLINGS) % HUES.len(), ..Look::of(hue, n) });
+        let is_free = |look: &Look| !looks.iter().flatten().any(|of| of == look);
+        if looks[place].is_none() {
+            looks[place] = all.find(is_free).or(Some(Look::of(hue, place)));
+        }
+    }
+    looks[study.place(method)]
+}
+
+/// How a method looks: by its levels, else by its family, else by place. No two of up to 28 methods of a study have all in common.
+pub(super) fn look(study: &Study, method: MethodId) -> Look {
     let level = |factor| study.level_of(method, factor).map(|level| level.index);
     let crossed = match study.declared_factors().collect::<Vec<_>>()[..] {
         [outer, inner] if tells_methods(study) => level(outer).zip(level(inner)),
         _ => None,
     };
+    let crossed = crossed.map(|(filling, hue)| Look::of(hue, filling));
     let place = study.place(method);
-    let crossed = crossed.map(|(filling, hue)| [hue, filling]);
-    let [hue, filling] = crossed.or_else(|| by_family(study, method)).unwrap_or([place, place / HUES.len()]);
-    [hue % HUES.len(), filling % FILLINGS]
+    crossed.or_else(|| by_family(study, method)).unwrap_or_else(|| Look::of(place, place / HUES.len()))
 }
 
-/// The mark of a method: a shape for each hue of [`method`], a filling for each of its fillings.
+/// The mark of a method.
 pub(super) fn mark(study: &Study, method: MethodId) -> Mark {
-    let [hue, filling] = hue_and_filling(study, method);
-    Mark::of(hue, [Filling::Full, Filling::Hollow, Filling::Dotted, Filling::Holed][filling])
+    let Look { filling, shape, .. } = look(study, method);
+    Mark::of(shape, [Filling::Full, Filling::Hollow, Filling::Dotted, Filling::Holed][filling])
 }
 
 /// The fill of a method.
 pub(super) fn method(study: &Study, method: MethodId) -> Fill {
-    let [hue, filling] = hue_and_filling(study, method);
+    let Look { hue, filling, .. } = look(study, method);
     let colour = HUES[hue];
     match filling {
         0 => Fill::plain(colour),

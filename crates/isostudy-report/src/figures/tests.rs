@@ -135,6 +135,77 @@ fn nothing_leaves_the_drawing_and_no_text_stands_on_another() {
     }
 }
 
+/// A study with 27 methods and four objects, and records made up for it.
+fn large() -> Everything {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/terrain.toml");
+    let study = isostudy_design::Study::load(&path).unwrap();
+    let mut all = Everything::of(fixture::study());
+    let ids: Vec<_> = study.configurations.iter().map(|of| of.id.clone()).collect();
+    assert!(study.methods.len() == 27 && study.file.objects.len() == 4);
+    let known = all.meshes.iter().find(|mesh| mesh.purpose == isostudy_design::record::Purpose::Benchmark);
+    let known = known.unwrap().clone();
+    let of = all.bench.samples[0].id.clone();
+    let samples: Vec<_> = all.bench.samples.iter().filter(|sample| sample.id == of).cloned().collect();
+    all.meshes = ids
+        .iter()
+        .map(|id| isostudy_design::record::MeshRecord { id: id.clone(), ..known.clone() })
+        .collect();
+    all.bench.samples = ids
+        .iter()
+        .flat_map(|id| {
+            let with = |of: &isostudy_design::record::BenchSample| isostudy_design::record::BenchSample {
+                id: id.clone(),
+                ..of.clone()
+            };
+            samples.iter().map(with).collect::<Vec<_>>()
+        })
+        .collect();
+    all.study = study;
+    all
+}
+
+#[test]
+fn no_label_of_a_large_study_stands_on_another() {
+    let all = large();
+    let inputs = Inputs { answers: None, ..all.inputs() };
+    for sheet in [Sheet::Wide, Sheet::Narrow] {
+        let drafts = [
+            meshes::triangles(&inputs, sheet),
+            meshes::pass_times(&inputs, sheet),
+            meshes::radius_ratios(&inputs, sheet),
+            meshes::aspect_ratios(&inputs, sheet),
+            stages::stage_times(&inputs, sheet),
+            distributions::aspect_ratios(&inputs, sheet),
+        ];
+        for draft in drafts.into_iter().flatten() {
+            let (name, canvas) = (draft.name, draft.canvas);
+            assert_eq!(canvas.texts_on_texts(), Vec::new(), "{name}, {sheet:?}");
+            assert_eq!(canvas.lines_on_lines(), Vec::new(), "{name}, {sheet:?}");
+            assert_eq!(canvas.texts_outside(), Vec::<String>::new(), "{name}, {sheet:?}");
+            let [left, right] = canvas.reach();
+            assert!(left >= 0.0 && right <= sheet.width(), "{name}, {sheet:?}: {left} to {right}");
+        }
+    }
+}
+
+#[test]
+fn no_two_methods_of_a_large_study_look_alike() {
+    let all = large();
+    let looks: Vec<style::Look> =
+        all.study.methods.iter().map(|method| style::look(&all.study, method.id)).collect();
+    for (i, look) in looks.iter().enumerate() {
+        // Marks differ in black and white as well.
+        let alike = looks[..i].iter().position(|of| (of.shape, of.filling) == (look.shape, look.filling));
+        assert_eq!(alike, None, "{}: {look:?}", all.study.methods[i].id);
+    }
+    let hue = |id: &str| {
+        let place = all.study.methods.iter().position(|method| method.id.to_string() == id);
+        looks[place.unwrap()].hue
+    };
+    assert!(hue("dc") == hue("dc-in-cell") && hue("dc") == hue("dca-matched"));
+    assert!(hue("bi") == hue("bir-matched") && hue("bi") != hue("dc") && hue("bi") != hue("si"));
+}
+
 #[test]
 fn a_phone_shows_letters_as_large_as_those_of_its_pages() {
     let all = Everything::of(fixture::study());
@@ -163,8 +234,12 @@ fn methods_of_one_family_share_a_hue() {
         method.recipe = recipe;
         method.levels.fill(None);
     }
-    let looks: Vec<[usize; 2]> =
-        study.methods.iter().map(|method| style::hue_and_filling(&study, method.id)).collect();
+    let of = |method: &isostudy_design::Method| {
+        let look = style::look(&study, method.id);
+        assert_eq!(look.shape, look.hue);
+        [look.hue, look.filling]
+    };
+    let looks: Vec<[usize; 2]> = study.methods.iter().map(of).collect();
     assert_eq!(looks, [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [3, 0]]);
 }
 

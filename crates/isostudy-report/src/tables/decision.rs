@@ -1,7 +1,7 @@
 //! Which method to take for what, and who is beaten in both time and error.
 
 use crate::region;
-use crate::wants::{busy, heading, judged, phrase, words};
+use crate::wants::{TIED, busy, heading, judged, phrase, words};
 use crate::words::{list, whole};
 use isostudy_design::record::BenchRun;
 use isostudy_design::{MethodId, Study};
@@ -13,9 +13,6 @@ use isostudy_inference::results::{Decision, Results};
 use isostudy_table::digits::number;
 use isostudy_table::{Cell, Columns, Table};
 use isostudy_timing::stage_times::measured;
-
-/// Ties of more methods are counted; the next table names them.
-const TIED: usize = 4;
 
 /// What a region has numbers of its own for.
 const JUDGED: &str = "Errors, sharp edges, radius ratios, numbers of triangles and of intersecting pairs";
@@ -54,6 +51,7 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick
                 let all: Vec<MethodId> = std::iter::once(id).chain(best.alike.iter().copied()).collect();
                 all.iter().map(MethodId::to_string).collect::<Vec<_>>().join(" = ")
             }
+            // The next table names them.
             n => format!("{id} = {} others", whole(n as u64)),
         };
         Cell::text(format!("{names}, {}", words(want).unit.replace("{}", &ranged(&[best.value.value]))))

@@ -7,5 +7,5 @@ mod templates;
 mod viewer;
 
 pub(super) use report::{Abstract, PictureData, write as write_report};
-pub(super) use templates::fits;
+pub(super) use templates::{caption, fits};
 pub(super) use viewer::{Embedded, viewer_page};

@@ -62,7 +62,8 @@ impl Pipeline<'_> {
             let results = Results::of(&inputs);
             let paper = Paper::of(&results);
             let gallery = Some(waiting.as_ref().map(|of| Unread::of(self.study, of)));
-            write(writer, &results, &paper, &self.read_pictures(shown)?, gallery)?;
+            let (pictures, caption) = (self.read_pictures(shown)?, self.pictures_caption(shown));
+            write(writer, &results, &paper, (&pictures, caption.as_deref()), gallery)?;
             writer.write_json(UNEXPLAINED, &paper.unexplained_differences())
         })?;
         step.count(stamp.redone);
@@ -97,7 +98,7 @@ pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store)
     let paper = Paper::of(&results);
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;
-        write(writer, &results, &paper, &[], None)
+        write(writer, &results, &paper, (&[], None), None)
     })?;
     Ok(Said { tables: all_tables(&results, &paper), found: isostudy_report::found(&results) })
 }
@@ -139,7 +140,7 @@ pub(crate) fn write_without_study(
         write_frames(writer, &[isostudy_report::answers_frame(&reading.responses)])?;
         let (overview, figures) = with_overview(figures);
         let report = isostudy_report::report_of_groups(&title, &preferences, &tables, &figures);
-        write_report(writer, &report, overview.as_ref(), &[], false)
+        write_report(writer, &report, overview.as_ref(), (&[], None), false)
     })?;
     Ok(Said { found: isostudy_report::found_in_groups(&preferences), tables })
 }
@@ -223,7 +224,7 @@ fn write(
     writer: &mut Writer<'_>,
     results: &Results<'_>,
     paper: &Paper<'_>,
-    pictures: &[PictureData],
+    pictures: (&[PictureData], Option<&str>),
     gallery: Option<Option<Unread>>,
 ) -> Result<()> {
     let tables = all_tables(results, paper);

@@ -2,7 +2,7 @@
 
 use super::glossary;
 use super::report::{Abstract, PictureData};
-use super::templates::{Picture, caption, environment};
+use super::templates::{Picture, environment};
 use crate::pipeline::pictures::{self, ShownFirst};
 use crate::pipeline::tables::{
     ABSTRACT, FIGURE_CONTENTS, FigureEntry, TABLE_CONTENTS, TableEntry, VOTES, Votes,
@@ -80,7 +80,7 @@ impl Pipeline<'_> {
             lines => Serde(&said.below()),
             overview => OVERVIEW,
             pictures => Serde(&pictures),
-            caption => self.pictured(shown).first().map(|c| caption(&self.study.object(c).name, shown.is_telling())),
+            caption => self.pictures_caption(shown),
             glossary => Serde(&glossary::parts()),
             study => Serde(&self.study.file.study),
             stills => Serde(&stills),

@@ -1,7 +1,7 @@
 //! The report as a page and as Markdown. What it says comes from `isostudy-report`; here it is only set.
 
 use super::glossary;
-use super::templates::{Picture, caption, environment, fits};
+use super::templates::{Picture, environment, fits};
 use crate::store::Writer;
 use anyhow::Result;
 use base64::Engine;
@@ -78,8 +78,6 @@ impl Abstract {
 /// A picture of a method on an object.
 pub(in crate::pipeline) struct PictureData {
     pub(in crate::pipeline) object: String,
-    /// Whether methods differ most on this object.
-    pub(in crate::pipeline) is_telling: bool,
     /// What tables call the method.
     pub(in crate::pipeline) id: String,
     pub(in crate::pipeline) label: String,
@@ -130,12 +128,13 @@ struct Part<'a> {
 }
 
 /// Writes `report.html`, one file that needs no other, and `report.md`, whose pictures are those in `figures/`.
-/// `overview` is shown before all else; `gallery` says whether there is an `index.html` to link to; `pictures` are of one object.
+/// `overview` is shown before all else; `gallery` says whether there is an `index.html` to link to; `pictures` are of one object, with what stands under
+/// them.
 pub(in crate::pipeline) fn write(
     writer: &mut Writer<'_>,
     report: &Report,
     overview: Option<&Figure>,
-    pictures: &[PictureData],
+    (pictures, pictures_caption): (&[PictureData], Option<&str>),
     gallery: bool,
 ) -> Result<()> {
     let parts: Vec<Part<'_>> = report.sections.iter().map(part).collect();
@@ -162,7 +161,7 @@ pub(in crate::pipeline) fn write(
         lines => Serde(&said.below()),
         overview => Serde(&overview.map(Drawing::of)),
         pictures => Serde(&pictures_set),
-        caption => pictures.first().map(|of| caption(&of.object, of.is_telling)),
+        caption => pictures_caption,
         methods_table => Serde(&report.methods.as_ref().map(|table| set(table, false))),
         lead => lead,
         limits => limits,

@@ -45,8 +45,13 @@ pub(super) struct Picture {
     pub(super) height: u32,
 }
 
-/// What stands under the pictures of the methods.
-pub(super) fn caption(object: &str, is_telling: bool) -> String {
+/// What stands under the pictures of the methods. `left_out` is how many have none for want of room.
+pub(in crate::pipeline) fn caption(object: &str, is_telling: bool, left_out: usize) -> String {
     let which = if is_telling { "the object on which their meshes differ most" } else { "one object" };
-    format!("The methods on {which}, the {object}: the first frame of each turntable.")
+    let left_out = match left_out {
+        0 => String::new(),
+        1 => " 1 more method has no picture here.".into(),
+        n => format!(" {n} more methods have no picture here."),
+    };
+    format!("The methods on {which}, the {object}: the first frame of each turntable.{left_out}")
 }

@@ -12,6 +12,10 @@ import { quality, surface } from 'viewer/surface.js';
 
 /** The share of triangles that a scale reaches, so that a few far ones do not take all colours. */
 const REACHED = 0.98;
+/** How many words of a long list a line names: all meshes of a large study would fill a phone's first screen. */
+const NAMED = 6;
+/** A list of up to so many is named whole, as that of the modes is. */
+const SHORT = 10;
 
 const catalogue = JSON.parse(document.getElementById('catalogue').textContent);
 const SIDES = ['left', 'right'];
@@ -53,6 +57,12 @@ function initial() {
   return { left: first.id, right: second.id, mode: 'wires', factor: nearest };
 }
 
+/** The words of a list; of a long one the first, and how many more there are. */
+function firstOf(words) {
+  if (words.length <= SHORT) return words.join(', ');
+  return `${words.slice(0, NAMED).join(', ')} and ${words.length - NAMED} more`;
+}
+
 /** Takes what the address says, as far as it is known, and says what is not. */
 function follow() {
   const asked = link.read();
@@ -66,7 +76,7 @@ function follow() {
   for (const [key, value] of Object.entries(asked)) {
     if (!known[key]) wrong.push(`The address has “${key}”, which this page does not know. It knows ${Object.keys(known).join(', ')}.`);
     else if (known[key].includes(value)) shown[key] = key === 'factor' ? Number(value) : value;
-    else wrong.push(`The address asks for ${key}=${value}, which this page does not have. It has ${known[key].join(', ')}.`);
+    else wrong.push(`The address asks for ${key}=${value}, which this page does not have. It has ${firstOf(known[key])}.`);
   }
   address.hidden = wrong.length === 0;
   address.replaceChildren(...wrong.map((text) => Object.assign(document.createElement('p'), { textContent: text })));
