@@ -121,7 +121,7 @@ def take(docs):
     """The table of recommendations: which method, why, and its price. `docs` leads to the folder of that name."""
     called = lambda method: range_of(ratios("chunks", "chunk_ms", method), 1)
     stored = lambda method: range_of(ratios("stored", "chunk_ms", method), 1)
-    chunk = lambda method: f"It takes {called(method)} times the time per chunk of `mc` ({stored(method)} from stored samples)"
+    chunk = lambda method: f"It takes {called(method)} times the time per chunk of `mc` ({stored(method)} from samples)"
     error = lambda method: [of / cubes for of, cubes in zip(errors(method), errors("mc"))]
     fewer = [100 * (1 - ratio) for ratio in ratios("quality", "triangles", "snapmc")]
     ratio = lambda method: range_of([float(table("quality", TO)[f"{o}_{method}"]["radius_ratio_mean"]) for o in OBJECTS], 2)
@@ -180,8 +180,8 @@ def take(docs):
         (
             "the look that people like most",
             "`si`, `bi` or `bp`",
-            "They have the highest worths, and are not shown to differ from each other.",
-            "People saw other objects, and the paper's six methods alone.",
+            "They have the highest worths, and are not shown to differ.",
+            "People saw other objects and six methods.",
         ),
     ]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
