@@ -16,6 +16,7 @@ mod accuracies;
 mod budgets;
 mod bundle;
 mod formats;
+mod measurements;
 mod meshes;
 mod pages;
 mod pictures;
@@ -45,7 +46,7 @@ use crate::store::{Inputs, Stamp, Store, Writer};
 use anyhow::{Context, Result};
 use isostudy_design::record::Purpose;
 use isostudy_design::{Configuration, ConfigurationId, Study};
-use pictures::Times;
+use measurements::Times;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard};
 
@@ -96,7 +97,7 @@ impl<'a> Pipeline<'a> {
         let times = Times { whole: &timings, chunks: &chunks, stored: &stored };
         let shown = self.shown_first(&meshes, &times)?;
         let pictures = self.pictures(&turntables, &shown)?;
-        let tables = self.tables(&meshes, &timings, [&chunks, &stored], &pictures, &shown)?;
+        let tables = self.tables(&meshes, &times, &pictures, &shown)?;
         let viewer = self.viewer(&meshes, &shown)?;
         let made =
             [turntables, pairs, forms, stills, pictures, chunks, stored, vec![timings, tables]].concat();

@@ -1,12 +1,12 @@
 //! One picture of each method on one object: what the pages show first.
 
+use super::measurements::Times;
 use super::pages::{PictureData, caption};
 use super::{Meshes, Pipeline};
 use crate::source_digests;
 use crate::store::{Inputs, Stamp};
 use anyhow::{Context, Result};
 use isostudy_design::config::FieldSection;
-use isostudy_design::record::{ChunkTimes, StoredTimes};
 use isostudy_design::{Configuration, ConfigurationId, MethodId, Study};
 use isostudy_inference::Results;
 use isostudy_raster::{pixmap_from_png, pixmap_to_png};
@@ -23,13 +23,6 @@ pub(super) struct ShownFirst {
     pub(super) pair: Option<[ConfigurationId; 2]>,
     /// Methods that have a picture before others where not all have one.
     named: Vec<MethodId>,
-}
-
-/// The times that choices are made by.
-pub(super) struct Times<'a> {
-    pub(super) whole: &'a Stamp,
-    pub(super) chunks: &'a [Stamp],
-    pub(super) stored: &'a [Stamp],
 }
 
 impl ShownFirst {
@@ -102,21 +95,8 @@ impl Pipeline<'_> {
 
     /// What choices name. Without answers, so that a study shows the same pictures before people answer and after.
     fn named_by_choices(&self, meshes: &Meshes, times: &Times<'_>) -> Result<Vec<MethodId>> {
-        let records = self.mesh_records(meshes)?;
-        let run = self.bench_run(times.whole)?;
-        let chunks: Vec<ChunkTimes> = self.times_apart(times.chunks)?;
-        let stored: Vec<StoredTimes> = self.times_apart(times.stored)?;
-        let left_out = self.left_out();
-        let inputs = isostudy_inference::Inputs {
-            study: self.study,
-            meshes: &records,
-            bench: Some(&run),
-            chunks: &chunks,
-            stored: &stored,
-            answers: None,
-            left_out: &left_out,
-        };
-        Ok(named_by_choices(&Results::of(&inputs)))
+        let measurements = self.measurements(meshes, times)?;
+        Ok(named_by_choices(&Results::of(&measurements.inputs(self.study, None))))
     }
 
     /// The configurations that would be on the pages' picture if it had room.

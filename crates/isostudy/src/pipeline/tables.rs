@@ -1,6 +1,7 @@
 //! Tables, figures and the report, from records, timings and answers.
 
 use super::formats::{write_figure, write_table};
+use super::measurements::Times;
 use super::pages::{Abstract, PictureData, fits, write_report};
 use super::pictures::ShownFirst;
 use super::{Meshes, Pipeline};
@@ -12,7 +13,6 @@ use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
 use isostudy_design::Study;
 use isostudy_design::config::ResponsesSection;
-use isostudy_design::record::{ChunkTimes, StoredTimes};
 use isostudy_inference::tally::QuestionCount;
 use isostudy_inference::{Answered, Preferences, Results};
 use isostudy_paper::Paper;
@@ -28,14 +28,13 @@ impl Pipeline<'_> {
     pub(super) fn tables(
         &self,
         meshes: &Meshes,
-        timings: &Stamp,
-        [chunks, stored]: [&[Stamp]; 2],
+        times: &Times<'_>,
         pictures: &[Stamp],
         shown: &ShownFirst,
     ) -> Result<Stamp> {
         let step = Step::begin("tables", 1, 1);
-        let mut inputs = study_inputs(self.study)?.stamp(timings);
-        for stamp in meshes.stamps().chain(chunks).chain(stored).chain(pictures) {
+        let mut inputs = study_inputs(self.study)?;
+        for stamp in meshes.stamps().chain(times.stamps()).chain(pictures) {
             inputs = inputs.stamp(stamp);
         }
         let left_out = self.left_out();
@@ -44,22 +43,10 @@ impl Pipeline<'_> {
             .value("left out", &left_out)
             .value("waiting", &waiting.as_ref().map(|of| (of.answers, of.people)));
         let stamp = self.store.stage("tables", inputs, |writer| {
-            let records = self.mesh_records(meshes)?;
-            let run = self.bench_run(timings)?;
-            let chunks: Vec<ChunkTimes> = self.times_apart(chunks)?;
-            let stored: Vec<StoredTimes> = self.times_apart(stored)?;
             let answers = crate::answer_files::of_study(self.study)?;
             let answers = answers.and_then(|reading| Answered::of(self.study, reading.responses));
-            let inputs = isostudy_inference::Inputs {
-                study: self.study,
-                meshes: &records,
-                bench: Some(&run),
-                chunks: &chunks,
-                stored: &stored,
-                answers: answers.as_ref(),
-                left_out: &left_out,
-            };
-            let results = Results::of(&inputs);
+            let measurements = self.measurements(meshes, times)?;
+            let results = Results::of(&measurements.inputs(self.study, answers.as_ref()));
             let paper = Paper::of(&results);
             let gallery = Some(waiting.as_ref().map(|of| Unread::of(self.study, of)));
             let (pictures, caption) = (self.read_pictures(shown)?, self.pictures_caption(shown));

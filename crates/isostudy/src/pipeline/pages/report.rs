@@ -128,8 +128,8 @@ struct Part<'a> {
 }
 
 /// Writes `report.html`, one file that needs no other, and `report.md`, whose pictures are those in `figures/`.
-/// `overview` is shown before all else; `gallery` says whether there is an `index.html` to link to; `pictures` are of one object, with what stands under
-/// them.
+/// `overview` is shown before all else; `gallery` says whether there is an `index.html` to link to; `pictures` are of one object, with
+/// what stands under them.
 pub(in crate::pipeline) fn write(
     writer: &mut Writer<'_>,
     report: &Report,
