@@ -110,7 +110,7 @@ def errors(method):
 def fastest():
     """That nobody is shown to be faster than these two, if it is so, for whole blocks, chunks and edits."""
     for row in csv.DictReader((TO / "choices.csv").open()):
-        for want in ["fastest", "chunk", "edit"]:
+        for want in ["fastest", "chunk", "edit", "stored", "stored_chunk", "stored_edit"]:
             names = row[want].rsplit(", ", 1)[0].split(" = ")
             if not {"mc", "mc-edge-groups"} & set(names):
                 sys.exit(f"{row['object']}: the {want} is {names}, and the pages recommend mc and mc-edge-groups")
@@ -156,7 +156,7 @@ def take(docs):
         (
             "buildings and sharp edges",
             "`dc-in-cell`",
-            f"It has {edge('dc-in-cell'):.3f} cube edges of error at the sharp edges of the building, where `mc` has {edge('mc'):.2f}. `dc` has {edge('dc'):.3f}, with {pairs('bu_dc'):,} pairs.",
+            f"It has {edge('dc-in-cell'):.3f} cube edges of error at the sharp edges of the building, where `mc` has {edge('mc'):.2f}. `dc` has {edge('dc'):.3f}, with {pairs('bu_dc'):,} intersecting pairs.",
             f"{chunk('dc-in-cell')}. {pairs('bu_dc-in-cell'):,} pairs of triangles intersect there, {pairs('ca_dc-in-cell'):,} in the caves.",
         ),
         (

@@ -497,6 +497,7 @@ fn left_out(program: &str, told: &str, command: &str) -> Study {
 /// extractor of ours.
 #[test]
 fn a_program_that_fails_while_it_is_timed_is_left_out_of_the_times() {
+    let number = |text: &str| text.parse::<f64>().unwrap();
     let folder = Study::new();
     let example = fs::read_to_string(folder.path("example.py")).unwrap();
     let from = "    request = json.loads(line)\n";
@@ -513,6 +514,14 @@ fn a_program_that_fails_while_it_is_timed_is_left_out_of_the_times() {
         let samples = folder.table("out/bench/short/samples.csv");
         let times = |id: &str| samples.iter().filter(|row| row[0] == id).count();
         assert_eq!((times("fo_bi"), times("vo_program"), times("fo_program")), (2, 2, 0), "{samples:?}");
+        // A program's own time (the eighth column) lies within the time from outside (the last), which others have not.
+        for row in &samples[1..] {
+            match row[0] == "vo_program" {
+                true => assert!(number(&row[19]) >= number(&row[7]) && number(&row[7]) > 0.0, "{row:?}"),
+                false if !row[0].ends_with("_program") => assert_eq!(row[19], "", "{row:?}"),
+                false => {}
+            }
+        }
     }
     assert!(folder.path("out/meshes/stimulus/fo_program.ply").exists());
 

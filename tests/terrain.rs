@@ -458,6 +458,25 @@ fn readmes_prices_follow_from_what_was_published() {
     let has_regions = csv_rows("topology")[0].contains_key("self_intersections_judged");
     let column = if has_regions { "self_intersections_judged" } else { "self_intersections" };
     let pairs = value("topology", "bu_dc-in-cell", column);
+    // What stands beside it on the page, of the methods that it does not recommend.
+    for object in objects {
+        let [own, beside] = ["mc-edge-groups", "mc"]
+            .map(|method| value("quality", &format!("{object}_{method}"), "radius_ratio_mean"));
+        assert!(own > beside, "{object}: {own} {beside}");
+    }
+    for object in ["cl", "ca", "bu"] {
+        let [own, beside] = ["dc", "dc-in-cell"].map(|method| format!("{object}_{method}"));
+        let edges = |id: &str| value("accuracy", id, "sharp_edges_mean");
+        assert!(edges(&own) < edges(&beside), "{object}");
+        assert!(value("topology", &own, column) > value("topology", &beside, column), "{object}");
+    }
+    // Nobody is shown to be faster than these two, by either clock.
+    for row in csv_rows("choices") {
+        for want in ["fastest", "chunk", "edit", "stored", "stored_chunk", "stored_edit"] {
+            let named = row[want].rsplit_once(", ").unwrap().0;
+            assert!(named.split(" = ").any(|of| ["mc", "mc-edge-groups"].contains(&of)), "{want}: {named}");
+        }
+    }
     assert!(row("dc-in-cell").contains(&format!("{pairs} pairs of triangles intersect there")), "{pairs}");
 }
 

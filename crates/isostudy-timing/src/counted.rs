@@ -207,5 +207,11 @@ mod tests {
         assert_eq!(table.notes[1], note);
         some.samples.iter_mut().for_each(|sample| sample.counters = Counters::default());
         assert!(counted_table(&some).rows.is_empty());
+        // A program's time from outside is told of programs, and not missed elsewhere.
+        some.samples.iter_mut().for_each(|sample| sample.counters.outside_s = Some(0.0035));
+        let table = counted_table(&some);
+        assert_eq!(table.to_csv().lines().next(), Some("id,outside_ms"));
+        assert!(table.to_csv().contains(",3.5\n"), "{}", table.to_csv());
+        assert!(table.notes.iter().any(|note| note.starts_with("From outside")), "{:?}", table.notes);
     }
 }

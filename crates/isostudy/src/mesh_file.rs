@@ -79,3 +79,37 @@ pub(crate) fn check_lies_in(mesh: &TriangleMesh, grid: &BoxGrid) -> Result<()> {
         max.to_array()
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// A triangle across a box of two units, in another unit and elsewhere.
+    #[test]
+    fn a_mesh_lies_in_the_box_of_its_object_or_a_cell_beyond() {
+        let grid = BoxGrid { bounds: Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE }, spacing: 0.1 };
+        let said = |scale: f32, shift: f32| {
+            let corners = [Vec3::NEG_ONE, Vec3::new(1.0, -1.0, 0.0), Vec3::ONE];
+            let positions = corners.map(|p| p * scale + shift).into();
+            let mesh = TriangleMesh { positions, normals: Vec::new(), triangles: vec![[0, 1, 2]] };
+            check_lies_in(&mesh, &grid).map_err(|error| error.to_string())
+        };
+        assert_eq!(said(1.0, 0.0), Ok(()));
+        assert_eq!(said(1.0, 0.0999), Ok(()));
+        let millimetres = said(1000.0, 0.0).unwrap_err();
+        assert!(
+            millimetres.contains("its unit is another") && millimetres.contains("9.091e2 times"),
+            "{millimetres}"
+        );
+        let elsewhere = said(1.0, 3.0).unwrap_err();
+        assert!(
+            elsewhere.starts_with("vertex 1 lies at [4.0, 2.0, 3.0]") || elsewhere.starts_with("vertex 0"),
+            "{elsewhere}"
+        );
+        assert!(!elsewhere.contains("unit is another"), "{elsewhere}");
+        for odd in [f32::NAN, f32::INFINITY, 3.4e38] {
+            assert!(said(1.0, odd).is_err(), "{odd}");
+        }
+    }
+}

@@ -365,6 +365,35 @@ fn people_who_do_not_differ_show_no_more_than_their_number() {
     assert_eq!((p(12).finding, p(12).p), (Finding::Found, Some(2.0_f64.powi(-11))));
 }
 
+/// Everybody presses left on one pair of so many, in both orders, and has no preference elsewhere: all have the same pull, without spread.
+#[test]
+fn a_pull_below_one_answer_in_twenty_is_none() {
+    let of = |pairs: usize| {
+        let shown = |person: usize, pair: usize| {
+            let sides = if person.is_multiple_of(2) { [0, 1] } else { [1, 0] };
+            let outcome = if pair == 0 { Outcome::Left } else { Outcome::Tie };
+            ShownBallot::new(person, pair, sides, outcome)
+        };
+        let ballots: Vec<ShownBallot> =
+            (0..12).flat_map(|person| (0..pairs).map(move |pair| shown(person, pair))).collect();
+        let names: Vec<String> = (0..pairs).map(|pair| format!("Q{pair}")).collect();
+        let scenes: Vec<usize> = (0..pairs).collect();
+        let audited = Audited {
+            ballots: &ballots,
+            groups: &[],
+            scenes: &scenes,
+            questions: &names,
+            objects: &names,
+            sides_recorded: true,
+            circumstances: &[],
+            dealt: None,
+        };
+        report(&audit(&audited), Probe::Side).finding
+    };
+    assert_eq!(of(10), Finding::Found);
+    assert_eq!(of(25), Finding::NotFound);
+}
+
 #[test]
 fn nothing_was_answered() {
     let audited = Audited {

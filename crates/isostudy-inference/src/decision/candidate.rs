@@ -95,8 +95,8 @@ impl Each {
         })
     }
 
-    /// Whether the median ratio of a piece's two times may be 1 in another run; `None` where there are more pieces of one than of the other, so that they
-    /// are not the same.
+    /// Whether the median ratio of a piece's two times may be 1 in another run; `None` where there are more pieces of one than of the
+    /// other, so that they are not the same.
     pub fn may_equal(&self, other: &Self) -> Option<bool> {
         if self.times_s.len() != other.times_s.len() {
             return None;

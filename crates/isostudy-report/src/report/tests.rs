@@ -531,3 +531,21 @@ fn where_the_side_may_have_made_everything_it_is_told_first() {
     let said = found(&report);
     assert!(said.starts_with("People favour a side"), "{said}");
 }
+
+/// Five people who mostly agree would pass a test by the spread between them; no outcome of five is significant.
+#[test]
+fn five_people_show_no_difference_on_a_scale() {
+    let mostly = |people| {
+        let mut answers = twelve(0..people, |left, right| if left < right { Left } else { Right });
+        // Upsets bound the worths; people have different numbers of them, so that there is a spread.
+        for person in 0..people {
+            for place in 0..=person % 3 {
+                let of = &mut answers[12 * person + (5 * place + 7 * person) % 12];
+                of.3 = if of.3 == Left { Right } else { Left };
+            }
+        }
+        found(&report_of("Trees", &groups(&answers))).to_owned()
+    };
+    assert!(!mostly(5).contains("On one scale"), "{}", mostly(5));
+    assert!(mostly(20).contains("On one scale"), "{}", mostly(20));
+}
