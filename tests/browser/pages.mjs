@@ -49,6 +49,8 @@ async function open(file, width, colorScheme, options = {}) {
 async function faults(page, rules = {}) {
   const measured = await page.evaluate(() => {
     const found = [];
+    const text = document.body.innerText;
+    if (text.includes('`')) found.push(`a mark of Markdown: ${text.slice(text.indexOf('`') - 40, text.indexOf('`') + 40)}`);
     const name = (element) => `${element.tagName.toLowerCase()}.${element.getAttribute('class') ?? ''}: ${element.textContent.trim().slice(0, 40)}`;
     const shown = (element) => element.getClientRects().length > 0;
     const region = (element) => element.closest('[role="region"][tabindex="0"][aria-label]:not([aria-label=""])');
@@ -103,6 +105,8 @@ for (const file of ['index.html', 'report.html']) {
         const verdicts = await page.locator('td.verdict').count();
         assert.ok(verdicts > 40, `${verdicts} verdicts`);
         await openAll(page);
+        const methods = page.locator('.fit.methods').first();
+        if (await methods.count()) assert.ok((await methods.boundingBox()).width > 0.8 * Math.min(width, 1160) - 40, 'the table of methods has the width');
         assert.deepEqual(await faults(page), []);
         assert.ok(await page.locator('img').count() >= 6, 'the methods are shown');
         await page.context().close();
@@ -163,6 +167,30 @@ for (const file of ['index.html', 'report.html']) {
       await page.context().close();
     });
   }
+
+  test(`a phone shows the first of each section of ${file}, and the rest when asked`, async () => {
+    const height = (page) => page.evaluate(() => document.documentElement.scrollHeight);
+    const page = await open(file, 390, 'light');
+    const rests = page.locator('details.rest');
+    assert.ok(await rests.count() >= 2);
+    assert.equal(await page.locator('details.rest[open]').count(), 0);
+    const before = await height(page);
+    const first = rests.first();
+    await first.locator('> summary').click();
+    assert.ok(await first.evaluate((of) => of.open));
+    assert.ok(await height(page) > before);
+    // A link into what is closed opens it.
+    const last = rests.last();
+    await last.evaluate((of) => { of.lastElementChild.id = 'there'; location.hash = '#there'; });
+    await page.waitForFunction(() => document.querySelector('#there').closest('details').open);
+    const printed = await open(file, 390, 'light');
+    await printed.evaluate(() => dispatchEvent(new Event('beforeprint')));
+    assert.equal(await printed.locator('details.rest:not([open])').count(), 0, 'paper shows all');
+    const wide = await open(file, 1280, 'light');
+    assert.equal(await wide.locator('details.rest:not([open])').count(), 0, 'a wide screen shows all');
+    assert.equal(await wide.locator('details.rest > summary:visible').count(), 0);
+    for (const of of [page, printed, wide]) await of.context().close();
+  });
 
   test(`on a phone no word of ${file} is broken, and figures can be read`, async () => {
     const page = await open(file, 390, 'light');

@@ -62,6 +62,8 @@ pub enum Conclusion {
     HiddenBySide,
     /// A preference was shown, people favour a side, and nothing was shown on both sides: the side may have made it.
     MayBeSide,
+    /// There is a difference of two preferences, and the one part was asked about other things than the other, which may make it.
+    OtherParts,
     /// Neither can be said.
     Open,
     /// No outcome of so few participants who lean one way or the other could have shown anything.
@@ -82,6 +84,7 @@ impl Conclusion {
             Self::AveragesOut => "averages out",
             Self::HiddenBySide => "hidden by a side",
             Self::MayBeSide => "may be the side's",
+            Self::OtherParts => "parts about other things",
             Self::Open => "open",
             Self::TooFew => "too few",
             Self::NobodyLeans => "nobody leans",
@@ -89,6 +92,10 @@ impl Conclusion {
         }
     }
 }
+
+/// Parts of a difference that are farther apart than this are about different things, see
+/// [`ScoreTest::apart`](isostudy_statistics::ScoreTest::apart).
+const OTHER_THINGS: f64 = 0.1;
 
 /// Level of tests where a study says nothing else.
 pub const ALPHA: f64 = 0.05;
@@ -227,6 +234,7 @@ impl Hypothesis {
             _ if self.test.leaning() == 0 => Conclusion::NobodyLeans,
             _ if self.least_possible() > level => Conclusion::TooFew,
             (true, _) if self.on_one_side => Conclusion::MayBeSide,
+            (true, _) if self.is_difference() && self.test.apart > OTHER_THINGS => Conclusion::OtherParts,
             (true, false) => Conclusion::Differs,
             (true, true) => Conclusion::DiffersWithinMargin,
             (false, true) if self.by_object => Conclusion::AveragesOut,
@@ -379,9 +387,8 @@ pub fn depends_on_object<'a>(
     if let Some(of) = omnibus::depends_on_object(omnibus, levels, level) {
         return Some(Dependence::Omnibus(of));
     }
-    let differ = contrasts_of(all).filter(|(h, l, over)| {
-        matches!(over, Over::ObjectDifference(..)) && *l == levels && h.adjusted <= level
-    });
+    let differ = contrasts_of(all)
+        .filter(|(h, l, over)| matches!(over, Over::ObjectDifference(..)) && *l == levels && h.differs());
     let clearest = differ.min_by(|(a, ..), (b, ..)| a.test.sign_flip.ln_p.total_cmp(&b.test.sign_flip.ln_p));
     clearest.map(|(of, ..)| Dependence::Difference(of))
 }

@@ -26,6 +26,8 @@ pub struct Liking {
     pub methods: Vec<MethodId>,
     /// The methods that no answers join to these.
     pub apart: Vec<MethodId>,
+    /// Whether so few people answered that no difference on the scale is judged.
+    pub is_too_few: bool,
     /// By method, the log worth less the mean of all, with its interval at 95 % over people. `None` where there is no one scale.
     pub worths: Result<Vec<(f64, Option<Interval>)>, FitError>,
     /// The most liked; `None` where there is no one scale, or where nothing bounds the worths and tests about the two themselves do
@@ -94,7 +96,8 @@ impl Liking {
         let participants = Participants::of(items.len(), &own);
         let methods: Vec<MethodId> = items.iter().map(|&item| all[item]).collect();
         let found = scale(&participants, 0);
-        let level = if is_too_few(participants.number(), level) { f64::NEG_INFINITY } else { level };
+        let is_too_few = is_too_few(participants.number(), level);
+        let level = if is_too_few { f64::NEG_INFINITY } else { level };
         let shown = |a: usize, b: usize| match object {
             Some(object) => is_shown_on(study, &answered.hypotheses, object, [methods[a], methods[b]]),
             None => is_shown(Some(study), &answered.hypotheses, "", methods[a].as_str(), methods[b].as_str()),
@@ -115,7 +118,7 @@ impl Liking {
         let pairs =
             found.as_ref().map_or_else(|_| Vec::new(), |scale| scale.differences.iter().map(pair).collect());
         let worths = found.map(|scale| centred(&scale, &participants));
-        Some(Self { object, methods, apart, worths, top, pairs })
+        Some(Self { object, methods, apart, is_too_few, worths, top, pairs })
     }
 
     /// The method that was shown to be liked more, then the other, of every two of which one was.

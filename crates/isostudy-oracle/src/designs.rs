@@ -22,6 +22,8 @@ pub(super) struct Design {
     repeats: u32,
     /// Most comparisons in a form.
     room: u32,
+    /// Level of tests, where the file says one.
+    level: Option<f64>,
 }
 
 const TWO: &[&str] = &["body-centred", "simple-cubic"];
@@ -49,6 +51,7 @@ pub(super) const FULL: Design = Design {
     controls: 0,
     repeats: 0,
     room: 27,
+    level: None,
 };
 
 /// Three blocks of nine questions.
@@ -172,6 +175,9 @@ impl Design {
         }
         let (most, first) = (self.room + controls + repeats, self.objects[0]);
         let [one, other] = [self.groups[0].1[0], self.groups[0].1[1]];
+        if let Some(level) = self.level {
+            text += &format!("[analysis]\nlevel = {level}\n");
+        }
         text + &format!(
             "[forms]\nprompt = \"Which?\"\nchoices = [\"Left\", \"No preference\", \"Right\"]\nparticipants = {participants}\n\
              sides = \"{sides}\"\norder = \"{order}\"\nnames = \"code-names\"\ncontrols = {controls}\nrepeats = {repeats}\n\
@@ -239,6 +245,11 @@ const OBJECT: &str = "isovalue = 0.0\nmin = [-1.0, -1.0, -1.0]\nmax = [1.0, 1.0,
 
 #[cfg(test)]
 impl Design {
+    /// The same, with tests at another level.
+    pub(super) fn at_level(self, name: &'static str, level: f64) -> Self {
+        Self { name, level: Some(level), ..self }
+    }
+
     /// Whether its groups are the paper's.
     pub(super) fn has_papers_methods(&self) -> bool {
         self.groups.len() == PAPER.len()

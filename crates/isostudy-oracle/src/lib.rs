@@ -74,4 +74,6 @@ mod conclusions;
 #[cfg(test)]
 mod coverage;
 #[cfg(test)]
+mod levels;
+#[cfg(test)]
 mod tests;

@@ -65,11 +65,11 @@ pub(super) fn findings(numbers: &Numbers<'_>, claims: &[(&Claim, claims::Finding
             "Means over objects and lattices, or over objects and clusterings. Our times are from {} on {model}; they \
              are compared as shares and ratios only, since the published ones are from {}. Medians over rounds, with their 95 % \
              order-statistic intervals. That a cost holds means its direction: the whole interval lies beyond the noise between \
-             processes, on the published side{}.",
+             processes, on the published side.{}",
             counted(run.iterations as usize, "round"),
             run.target.name,
             if run.aa_samples.is_empty() {
-                "; this run has no A/A block to know that noise by (`isostudy bench` has), and 5 % is assumed"
+                " This run has no A/A block, from which that noise is known, so 5 % is assumed. A run of isostudy bench has one."
             } else {
                 ""
             }

@@ -254,17 +254,11 @@ impl Goal {
     }
 }
 
-/// Parts of a difference that are farther apart than this are about different things, see
-/// [`ScoreTest::apart`](isostudy_statistics::ScoreTest::apart).
-const OTHER_OBJECTS: f64 = 0.1;
-
 fn contrast(preferences: &Preferences<'_>, place: usize, row: &Row, limits: &[Limit]) -> Conclusion {
     let hypothesis = &preferences.hypotheses[row.hypothesis];
     let mut limits = limits.to_vec();
     let verdict = match hypothesis.conclusion() {
-        Tested::Differs | Tested::DiffersWithinMargin
-            if row.is_difference && hypothesis.test.apart > OTHER_OBJECTS =>
-        {
+        Tested::OtherParts => {
             limits.push(Limit::OtherObjects);
             Verdict::NotJudged(Why::Design)
         }

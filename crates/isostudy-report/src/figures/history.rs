@@ -54,7 +54,7 @@ fn draft(steps: &[Step]) -> Option<Unfinished> {
         names: Vec::new(),
     };
     panel.draw(&mut canvas, (0.0, top), (Sheet::Wide.width(), top + HEIGHT));
-    let caption = "Runs that were kept. No verdicts: `isostudy bench compare` gives those.".into();
+    let caption = "Runs that were kept. Verdicts are given by isostudy bench compare, and not here.".into();
     Some(Unfinished { name: "history", caption, canvas })
 }
 

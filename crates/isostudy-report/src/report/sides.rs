@@ -169,11 +169,7 @@ pub(super) fn in_both_orders(evidence: &Evidence<'_>) -> String {
 pub(super) fn favoured(sides: &Sides<'_>) -> Option<String> {
     let widest = sides.with(SideDesign::Counterbalanced).max_by_key(|of| of.group.ballots.len())?;
     let (side, by) = match widest.bonus? {
-        // What nobody could see in the number is not said.
-        SideBonus::AtLeast(SideBound { at_least, .. }) if at_least < 0.005 => return None,
-        SideBonus::AtLeast(SideBound { side, at_least }) => {
-            (names::side(side), format!("at least {}", number(at_least, 2)))
-        }
+        SideBonus::AtLeast(SideBound { side, at_least }) => (names::side(side), said_at_least(at_least)?),
         SideBonus::Left(left, Some(within)) if within.low > 0.0 || within.high < 0.0 => {
             let turned = Interval { low: -within.high, high: -within.low };
             let (name, of, within) =
@@ -185,6 +181,11 @@ pub(super) fn favoured(sides: &Sides<'_>) -> Option<String> {
     Some(format!(
         "Whatever stood there, the {side} side was favoured by {by} log-odds, by Davidson's model with a side."
     ))
+}
+
+/// A bound from below; `None` where nobody could see it in the number.
+fn said_at_least(bound: f64) -> Option<String> {
+    (bound >= 0.005).then(|| format!("at least {}", number(bound, 2)))
 }
 
 /// The levels of a study that always stood on one side of the questions that compare them, as people saw them.
@@ -219,4 +220,18 @@ fn always(evidence: &Evidence<'_>) -> Option<String> {
     let parts: Vec<String> =
         [of([true, false], "left"), of([false, true], "right")].into_iter().flatten().collect();
     (!parts.is_empty()).then(|| capital(&parts.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::said_at_least;
+
+    #[test]
+    fn a_bound_that_reads_as_nothing_is_not_said() {
+        assert_eq!([0.0, 0.004].map(said_at_least), [None, None]);
+        assert_eq!(
+            [0.005, 1.23].map(said_at_least),
+            ["at least 0.01", "at least 1.23"].map(|of| Some(of.into()))
+        );
+    }
 }

@@ -444,6 +444,28 @@ fn nobody_left_is_no_comparison() {
 }
 
 #[test]
+fn two_people_are_both_and_one_is_one() {
+    let said = |people| found(&report_of("Trees", &groups(&twelve(0..people, |_, _| Left)))).to_owned();
+    let two = said(2);
+    assert!(two.contains("Both people broke a rule of screening, so that nobody is left"), "{two}");
+    let one = said(1);
+    assert!(one.contains("All 1 person broke a rule of screening, so that nobody is left"), "{one}");
+}
+
+#[test]
+fn equal_pairs_are_told_apart_from_each_other() {
+    // On each pair of trees twenty people give twenty answers for the first and twenty for the second.
+    let pairs = [(0, 1), (1, 2), (0, 2)];
+    let half = |place: usize| if place < 20 { Left } else { Right };
+    let of = |person| {
+        pairs.into_iter().flat_map(move |(a, b)| (0..40).map(move |place| (person, a, b, half(place))))
+    };
+    let said = found(&report_of("Trees", &groups(&(0..20).flat_map(of).collect::<Vec<_>>()))).to_owned();
+    let equal = "Within the margin people like these alike: elm and oak; ash and elm; ash and oak.";
+    assert!(said.contains(equal) && !said.contains("No preference"), "{said}");
+}
+
+#[test]
 fn what_turns_round_is_not_what_fewer_people_leave_undecided() {
     // Who looks prefers the elm; forty press the left, where the oak stands most often.
     let mut answers: Vec<_> =

@@ -20,9 +20,15 @@ for (const section of sections) {
 // A link into a closed section opens it.
 const reveal = () => {
   const target = document.getElementById(location.hash.slice(1));
-  const section = target?.closest("details");
-  if (section) section.open = true;
+  for (let section = target?.closest("details"); section; section = section.parentElement.closest("details")) section.open = true;
 };
+// A phone shows the first of each section, and the rest when asked; other screens and paper show all.
+const rests = sections.filter((section) => section.classList.contains("rest"));
+const setRests = (open) => rests.forEach((section) => { section.open = open; });
+const narrow = matchMedia("screen and (max-width: 700px)");
+narrow.addEventListener("change", () => setRests(!narrow.matches));
+addEventListener("beforeprint", () => setRests(true));
+setRests(!narrow.matches);
 addEventListener("hashchange", reveal);
 reveal();
 // Tables can be searched and opened together; without this script nothing says so.
@@ -31,6 +37,7 @@ for (const tools of document.querySelectorAll(".tools")) {
   tools.hidden = tables.length === 0;
   const [input, button, found] = [tools.querySelector("input"), tools.querySelector("button"), tools.querySelector("output")];
   input.addEventListener("input", () => {
+    setRests(true);
     const wanted = input.value.trim().toLowerCase();
     let left = 0;
     for (const section of tables) {
@@ -47,6 +54,7 @@ for (const tools of document.querySelectorAll(".tools")) {
   });
   button.addEventListener("click", () => {
     const open = button.getAttribute("aria-pressed") !== "true";
+    if (open) setRests(true);
     for (const section of tables) section.open = open;
     button.setAttribute("aria-pressed", String(open));
     button.textContent = open ? "Close all tables" : "Open all tables";
