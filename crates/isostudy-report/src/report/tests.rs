@@ -181,6 +181,25 @@ fn equal_counts_stand_as_in_the_table() {
 }
 
 #[test]
+fn levels_of_a_scale_are_told_by_their_names() {
+    let study = fixture::study();
+    let answered = fixture::answered(&study);
+    let inputs = Inputs {
+        study: &study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        stored: &[],
+        answers: Some(&answered),
+        left_out: &[],
+    };
+    let results = Results::of(&inputs);
+    let text = super::report(&results, &crate::tables(&results), &[], Vec::new()).to_markdown();
+    assert!(text.contains("Integrated clustering stands highest.") && !text.contains(" I stands"), "{text}");
+    assert!(text.contains("si stands highest, and is not shown to differ from bi and bp."), "{text}");
+}
+
+#[test]
 fn too_few_people_are_told_what_they_could_have_shown() {
     let said = said(3, |_, _| Left);
     let found = of(&said, "preferences", "9 of 9 comparisons within one level each are not decided: ");
@@ -454,14 +473,15 @@ fn two_people_are_both_and_one_is_one() {
 
 #[test]
 fn equal_pairs_are_told_apart_from_each_other() {
-    // On each pair of trees twenty people give twenty answers for the first and twenty for the second.
+    // On each pair of trees ten people give nineteen of forty answers for the first, and ten twenty-one.
     let pairs = [(0, 1), (1, 2), (0, 2)];
-    let half = |place: usize| if place < 20 { Left } else { Right };
-    let of = |person| {
+    let of = |person: usize| {
+        let first = if person < 10 { 19 } else { 21 };
+        let half = move |place: usize| if place < first { Left } else { Right };
         pairs.into_iter().flat_map(move |(a, b)| (0..40).map(move |place| (person, a, b, half(place))))
     };
     let said = found(&report_of("Trees", &groups(&(0..20).flat_map(of).collect::<Vec<_>>()))).to_owned();
-    let equal = "Within the margin people like these alike: elm and oak; ash and elm; ash and oak.";
+    let equal = "Within the margin people like these alike: oak and elm; oak and ash; elm and ash.";
     assert!(said.contains(equal) && !said.contains("No preference"), "{said}");
 }
 

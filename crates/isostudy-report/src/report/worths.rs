@@ -1,10 +1,11 @@
 //! What the models say: all items on one scale, and how well the models fit.
 
 use super::evidence::{Evidence, WEIGHTS, answer_unequally};
+use super::names;
 use super::told::named;
 use crate::standing::Standing;
 use crate::statement::{Block, Finding};
-use crate::words::{counted, list, number, p};
+use crate::words::{capital, counted, list, number, p};
 use isostudy_inference::conclusions::{About, Conclusions, Verdict, Why};
 use isostudy_inference::scale::GroupScale;
 use isostudy_statistics::{Difference, Goodness, Model};
@@ -83,11 +84,17 @@ fn one_scale(
         ),
         _ => format!("On one scale of {whose} no difference was shown."),
     };
+    let name = |item: &String| names::item(evidence.study, &group.name, item);
+    // A name of an item stays as it is.
+    let opening = |item: &String| if name(item) == *item { item.clone() } else { capital(&name(item)) };
     let highest = match conclusions.about(About::Top(place)).map(|of| &of.verdict) {
         Some(Verdict::Best { is_everybody: true, .. }) | None => String::new(),
-        Some(Verdict::Best { best, tied, .. }) if tied.is_empty() => format!("{best} stands highest."),
+        Some(Verdict::Best { best, tied, .. }) if tied.is_empty() => {
+            format!("{} stands highest.", opening(best))
+        }
         Some(Verdict::Best { best, tied, .. }) => {
-            format!("{best} stands highest, and is not shown to differ from {}.", named(tied))
+            let tied: Vec<String> = tied.iter().map(name).collect();
+            format!("{} stands highest, and is not shown to differ from {}.", opening(best), named(&tied))
         }
         Some(_) => String::new(),
     };
