@@ -200,7 +200,7 @@ for (const file of ['index.html', 'report.html']) {
         if (cell.getClientRects().length === 0) continue;
         const texts = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
         for (let node = texts.nextNode(); node; node = texts.nextNode()) {
-          for (const { 0: word, index } of node.textContent.matchAll(/[\p{L}\p{N}_]+/gu)) {
+          for (const { 0: word, index } of node.textContent.matchAll(node.parentElement.matches('.code') ? /.+/gu : /[\p{L}\p{N}_]+/gu)) {
             const range = document.createRange();
             range.setStart(node, index);
             range.setEnd(node, index + word.length);

@@ -1,5 +1,6 @@
 //! The pages that people read: `index.html`, which shows a study, and the report.
 
+mod codes;
 mod glossary;
 mod index;
 mod report;

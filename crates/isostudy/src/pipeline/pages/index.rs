@@ -1,8 +1,8 @@
 //! The page that shows a study.
 
-use super::glossary;
 use super::report::{Abstract, PictureData};
 use super::templates::{Picture, environment};
+use super::{codes, glossary};
 use crate::pipeline::pictures::{self, ShownFirst};
 use crate::pipeline::tables::{
     ABSTRACT, FIGURE_CONTENTS, FigureEntry, TABLE_CONTENTS, TableEntry, VOTES, Votes,
@@ -14,7 +14,7 @@ use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
 use isostudy_design::config::{SideRule, StillSection};
-use isostudy_design::{Comparison, Configuration, ConfigurationId};
+use isostudy_design::{Comparison, Configuration, ConfigurationId, MethodId};
 use isostudy_report::OVERVIEW;
 use minijinja::context;
 use minijinja::value::Serde;
@@ -94,7 +94,8 @@ impl Pipeline<'_> {
             turntable => Serde(&self.study.file.turntable),
             version => env!("CARGO_PKG_VERSION"),
         })?;
-        Ok(text)
+        let methods = self.study.method_ids();
+        Ok(codes::set_whole(&text, &methods.iter().map(MethodId::as_str).collect::<Vec<_>>()))
     }
 
     fn page_pictures(&self, shown: &ShownFirst) -> Result<Vec<Picture>> {

@@ -1,13 +1,13 @@
 //! The report as a page and as Markdown. What it says comes from `isostudy-report`; here it is only set.
 
-use super::glossary;
 use super::templates::{Picture, environment, fits};
+use super::{codes, glossary};
 use crate::store::Writer;
 use anyhow::Result;
 use base64::Engine;
 use isostudy_report::report::{Block, Finding};
 use isostudy_report::{Figure, Report};
-use isostudy_table::Table;
+use isostudy_table::{Cell, Table};
 use minijinja::context;
 use minijinja::value::Serde;
 use serde::{Deserialize, Serialize};
@@ -170,6 +170,9 @@ pub(in crate::pipeline) fn write(
         gallery,
         version => env!("CARGO_PKG_VERSION"),
     })?;
+    let methods = report.methods.iter().flat_map(|table| &table.rows).filter_map(|row| row.first());
+    let named: Vec<String> = methods.map(Cell::in_full).collect();
+    let page = codes::set_whole(&page, &named.iter().map(String::as_str).collect::<Vec<_>>());
     writer.write("report.html", page.as_bytes())?;
     writer.write("report.md", report.to_markdown().as_bytes())
 }
