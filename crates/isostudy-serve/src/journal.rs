@@ -18,14 +18,14 @@ mod waiting;
 #[cfg(test)]
 mod tests;
 
-pub use files::{Kept, kept};
 #[cfg(test)]
 pub(crate) use files::kept_on;
+pub use files::{Kept, kept};
 pub use seal::Held;
 pub use summary::Summary;
-pub use thread::{Handle, Keeper, Unsaved, start};
 #[cfg(test)]
 pub(crate) use thread::{Desk, desk};
+pub use thread::{Handle, Keeper, Unsaved, start};
 
 use crate::export::Given;
 use crate::machine::{Machine, Owned, System};

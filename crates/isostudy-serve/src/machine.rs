@@ -84,7 +84,9 @@ impl Machine for System {
     fn make_folders(&self, path: &Path) -> io::Result<()> {
         let new = path.ancestors().take_while(|above| !above.exists()).count();
         DirBuilder::new().recursive(true).mode(0o700).create(path)?;
-        let here = |above: &Path| if above.as_os_str().is_empty() { Path::new(".").into() } else { above.to_owned() };
+        let here = |above: &Path| {
+            if above.as_os_str().is_empty() { Path::new(".").into() } else { above.to_owned() }
+        };
         path.ancestors().skip(1).take(new).try_for_each(|above| self.sync_folder(&here(above)))
     }
 

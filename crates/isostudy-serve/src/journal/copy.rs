@@ -13,7 +13,11 @@ pub(super) struct Copied<'a> {
 
 impl<'a> Copied<'a> {
     /// Copies the databases of these names, each with its log.
-    pub(super) fn of(machine: &'a dyn Machine, folder: &Path, databases: &[&str]) -> Result<Self, JournalError> {
+    pub(super) fn of(
+        machine: &'a dyn Machine,
+        folder: &Path,
+        databases: &[&str],
+    ) -> Result<Self, JournalError> {
         let failed = |path: &Path, source| JournalError::Folder { path: path.into(), source };
         let path = std::env::temp_dir().join(format!("isostudy-{}", hex(machine, 8)));
         machine.make_folder(&path).map_err(|e| failed(&path, e))?;

@@ -21,16 +21,8 @@ pub(super) enum Fault {
     Short,
     /// From now on there is no room, for so many operations.
     Full(u64),
-    /// The process is killed before it, or after it.
-    Kill(Moment),
-    /// The power goes before it, or after it.
-    Power(Moment),
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Moment {
-    Before,
-    After,
+    /// The process ends before it. That it ends after it is the same as before the next one.
+    End(End),
 }
 
 /// How a process ended that did not end by itself.
@@ -94,7 +86,7 @@ pub(super) struct Disk {
     taken: BTreeSet<String>,
     handles: u64,
     /// Operations so far.
-    operations: u64,
+    operations: Vec<Kind>,
     fault: Option<(u64, Fault)>,
     /// Faults that have happened: operations that failed.
     failed: u64,
@@ -103,10 +95,13 @@ pub(super) struct Disk {
 }
 
 /// What an operation does.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// It changes nothing: a read, an open.
     Look,
+    /// It takes room.
     Write,
+    /// It cuts, removes or syncs.
     Other,
 }
 
@@ -119,7 +114,7 @@ impl Disk {
             safe: BTreeMap::new(),
             taken: BTreeSet::new(),
             handles: 0,
-            operations: 0,
+            operations: Vec::new(),
             fault: None,
             failed: 0,
             full_until: 0,
@@ -129,7 +124,7 @@ impl Disk {
 
     /// Has a fault happen that many operations from now, from 1, in place of one that has not happened.
     pub(super) fn arm(&mut self, ahead: u64, fault: Fault) {
-        self.fault = Some((self.operations + ahead, fault));
+        self.fault = Some((self.operations() + ahead, fault));
     }
 
     /// No fault will happen.
@@ -139,7 +134,12 @@ impl Disk {
     }
 
     pub(super) fn operations(&self) -> u64 {
-        self.operations
+        self.operations.len() as u64
+    }
+
+    /// What each operation so far did.
+    pub(super) fn kinds(&self) -> &[Kind] {
+        &self.operations
     }
 
     pub(super) fn failed(&self) -> u64 {
@@ -208,16 +208,21 @@ impl Disk {
     }
 
     /// Counts an operation, which `apply` does, and has it fail if that is its fate.
-    fn operate<T>(&mut self, kind: Kind, apply: impl FnOnce(&mut Self, bool) -> io::Result<T>) -> io::Result<T> {
+    fn operate<T>(
+        &mut self,
+        kind: Kind,
+        apply: impl FnOnce(&mut Self, bool) -> io::Result<T>,
+    ) -> io::Result<T> {
         if self.end.is_some() {
             return Err(ErrorKind::BrokenPipe.into());
         }
-        self.operations += 1;
-        let fate = self.fault.take_if(|(at, _)| *at == self.operations).map(|(_, fault)| fault);
+        self.operations.push(kind);
+        let number = self.operations();
+        let fate = self.fault.take_if(|(at, _)| *at == number).map(|(_, fault)| fault);
         if let Some(Fault::Full(operations)) = fate {
-            self.full_until = self.operations + operations;
+            self.full_until = number + operations;
         }
-        if kind == Kind::Write && self.operations < self.full_until {
+        if kind == Kind::Write && number < self.full_until {
             self.failed += 1;
             // By this the trait of SQLite's files tells a full disk.
             return Err(ErrorKind::WriteZero.into());
@@ -228,12 +233,7 @@ impl Disk {
                 self.failed += 1;
                 match fault {
                     Fault::Short if kind == Kind::Write => drop(apply(self, false)),
-                    Fault::Kill(Moment::After) | Fault::Power(Moment::After) => drop(apply(self, true)),
-                    _ => {}
-                }
-                match fault {
-                    Fault::Kill(_) => self.end = Some(End::Killed),
-                    Fault::Power(_) => self.end = Some(End::PowerGone),
+                    Fault::End(end) => self.end = Some(end),
                     _ => {}
                 }
                 Err(io::Error::other("as the simulation wants"))
@@ -248,7 +248,7 @@ impl Disk {
     /// Opens a file; makes it if it may.
     pub(super) fn open(&mut self, path: &str, create: bool, must_be_new: bool) -> io::Result<usize> {
         let there = self.exists(path);
-        let kind = if create && !there { Kind::Write } else { Kind::Other };
+        let kind = if create && !there { Kind::Write } else { Kind::Look };
         self.operate(kind, |disk, _| match disk.seen.get(path) {
             Some(_) if must_be_new => Err(ErrorKind::AlreadyExists.into()),
             Some(&inode) => Ok(inode),
@@ -284,7 +284,9 @@ impl Disk {
     pub(super) fn sync_names(&mut self, folder: &str) -> io::Result<()> {
         self.operate(Kind::Other, |disk, _| {
             disk.safe.retain(|path, _| !path.starts_with(folder));
-            disk.safe.extend(disk.seen.iter().filter(|(path, _)| path.starts_with(folder)).map(|(p, i)| (p.clone(), *i)));
+            disk.safe.extend(
+                disk.seen.iter().filter(|(path, _)| path.starts_with(folder)).map(|(p, i)| (p.clone(), *i)),
+            );
             Ok(())
         })
     }
@@ -355,7 +357,8 @@ impl Disk {
     /// Changes a handle's lock of a database to a level: 1 shared, 2 reserved, 3 pending, 4 the only one.
     pub(super) fn lock(&mut self, inode: usize, handle: u64, level: u8) -> bool {
         let locks = &mut self.inodes[inode].locks;
-        let others = locks.iter().filter(|(of, _)| **of != handle).map(|(_, level)| *level).max().unwrap_or(0);
+        let others =
+            locks.iter().filter(|(of, _)| **of != handle).map(|(_, level)| *level).max().unwrap_or(0);
         let allowed = match level {
             0 => true,
             1 => others < 3,
@@ -393,13 +396,21 @@ impl Disk {
     }
 
     /// Takes slots of an index, shared or alone, or lets go of them.
-    pub(super) fn lock_index(&mut self, inode: usize, handle: u64, slots: std::ops::Range<u8>, alone: Option<bool>) -> bool {
+    pub(super) fn lock_index(
+        &mut self,
+        inode: usize,
+        handle: u64,
+        slots: std::ops::Range<u8>,
+        alone: Option<bool>,
+    ) -> bool {
         let locks = &mut self.inodes[inode].index_locks;
         let Some(alone) = alone else {
             locks.retain(|(slot, of), _| *of != handle || !slots.contains(slot));
             return true;
         };
-        let hinders = |(&(slot, of), &only): (&(u8, u64), &bool)| of != handle && slots.contains(&slot) && (alone || only);
+        let hinders = |(&(slot, of), &only): (&(u8, u64), &bool)| {
+            of != handle && slots.contains(&slot) && (alone || only)
+        };
         if locks.iter().any(hinders) {
             return false;
         }

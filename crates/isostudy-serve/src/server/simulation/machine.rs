@@ -94,7 +94,12 @@ impl Machine for Simulated {
 
     fn open(&self, path: &Path) -> io::Result<Box<dyn Owned>> {
         let inode = self.state().disk.open(text(path), true, false)?;
-        Ok(Box::new(OwnedFile { machine: self.clone(), path: text(path).to_owned(), inode, taken: false.into() }))
+        Ok(Box::new(OwnedFile {
+            machine: self.clone(),
+            path: text(path).to_owned(),
+            inode,
+            taken: false.into(),
+        }))
     }
 
     fn read(&self, path: &Path, most: u64) -> io::Result<Vec<u8>> {
@@ -221,7 +226,11 @@ impl DatabaseHandle for Handle {
     fn set_len(&mut self, length: u64) -> io::Result<()> {
         let disk = &mut self.machine.state().disk;
         // To a hint of how long a file will be, SQLite's own files do nothing.
-        if length as usize >= disk.length(self.inode) { Ok(()) } else { disk.cut(self.inode, length as usize) }
+        if length as usize >= disk.length(self.inode) {
+            Ok(())
+        } else {
+            disk.cut(self.inode, length as usize)
+        }
     }
 
     fn lock(&mut self, level: LockKind) -> io::Result<bool> {

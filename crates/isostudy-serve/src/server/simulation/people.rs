@@ -90,14 +90,16 @@ impl People {
         let of = |session: &Session| session.acknowledged();
         match asked {
             Asked::Begin { panel: None } => 0,
-            Asked::Begin { panel } => self.sessions.values().filter(|one| one.panel == *panel).map(of).max().unwrap_or(0),
+            Asked::Begin { panel } => {
+                self.sessions.values().filter(|one| one.panel == *panel).map(of).max().unwrap_or(0)
+            }
             _ => asked.token().and_then(|token| self.sessions.get(token)).map_or(0, of),
         }
     }
 
-    /// Sessions of which something was sent that can be kept.
+    /// Sessions of which an answer was acknowledged.
     pub(super) fn answered(&self) -> usize {
-        self.sessions.values().filter(|session| session.sent.iter().any(|sent| !sent.is_empty())).count()
+        self.sessions.values().filter(|session| session.acknowledged() > 0).count()
     }
 
     pub(super) fn send(&mut self, token: &str, place: usize, said: Said) {
@@ -168,7 +170,8 @@ impl People {
 
     fn dealt(&mut self, panel: Option<usize>, before: usize, said: &Value) -> Result<(), String> {
         let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-        let questions: Vec<String> = said["form"]["questions"].as_array().into_iter().flatten().map(text).collect();
+        let questions: Vec<String> =
+            said["form"]["questions"].as_array().into_iter().flatten().map(text).collect();
         let session = self.sessions.entry(text(&said["token"])).or_insert_with(|| Session {
             name: text(&said["participant"]),
             form: said["form"]["form"].as_u64().unwrap_or(0) as usize,
@@ -222,7 +225,9 @@ impl People {
                     session.certain[place] = Certain::Said(*said);
                 }
             }
-            if rows.keys().any(|(name, order)| *name == session.name && *order as usize > session.questions.len() + TRAINING) {
+            if rows.keys().any(|(name, order)| {
+                *name == session.name && *order as usize > session.questions.len() + TRAINING
+            }) {
                 return Err(format!("{what}: {} answered more than was asked", session.name));
             }
         }
@@ -256,7 +261,10 @@ impl People {
         let finished = self.sessions.values().filter(|session| session.finished).count();
         let complete = self.sessions.values().filter(|one| one.acknowledged() == one.questions.len()).count();
         if number("answers") != rows.len() || !(finished..=complete).contains(&number("finished")) {
-            return Err(format!("summary: {} answers, {finished} to {complete} finished: {text}", rows.len()));
+            return Err(format!(
+                "summary: {} answers, {finished} to {complete} finished: {text}",
+                rows.len()
+            ));
         }
         Ok(())
     }
@@ -279,7 +287,8 @@ pub(super) fn rows(text: &str) -> Result<Rows, String> {
     for record in reader.records() {
         let record = record.map_err(|error| error.to_string())?;
         let cell = |column: usize| record[places[column]].to_owned();
-        let number = |column: usize| cell(column).parse::<u32>().map_err(|error| format!("{record:?}: {error}"));
+        let number =
+            |column: usize| cell(column).parse::<u32>().map_err(|error| format!("{record:?}: {error}"));
         let choice = Choice::of_code(&cell(4)).ok_or(format!("{record:?}: no choice"))?;
         let width = if cell(6).is_empty() { None } else { Some(number(6)?) };
         let said = Said { choice, rt_ms: number(5)?, width };
@@ -299,7 +308,8 @@ pub(super) fn rows_of(given: &[Given]) -> Result<Rows, String> {
             rt_ms: answer.rt_ms,
             width: answer.screen.map(|screen| screen.viewport_width),
         };
-        if rows.insert((participant.clone(), answer.order), (*form, answer.stimulus.clone(), said)).is_some() {
+        if rows.insert((participant.clone(), answer.order), (*form, answer.stimulus.clone(), said)).is_some()
+        {
             return Err(format!("{participant}, place {}, is there twice", answer.order));
         }
     }

@@ -64,7 +64,11 @@ pub(super) struct Running {
 
 impl Running {
     /// Starts it on what is on the disk. Of 1 to 1000 pages, `log_pages` are those after which a log is merged.
-    pub(super) fn start(machine: &Simulated, settings: &Settings, log_pages: u32) -> Result<Self, JournalError> {
+    pub(super) fn start(
+        machine: &Simulated,
+        settings: &Settings,
+        log_pages: u32,
+    ) -> Result<Self, JournalError> {
         let Settings { answers, file, digest, .. } = settings;
         let journal = Journal::open_on(Arc::new(machine.clone()), answers, file, digest, Loss::Refuse)?;
         journal.merge_log_after(log_pages);
