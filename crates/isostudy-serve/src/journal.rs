@@ -311,12 +311,9 @@ impl Journal {
             }
         }
         self.waiting.turned_back();
-        let nobodys = self.read().map_err(|e| files::error(&self.folder, e))?;
-        let waits = |name: &String| self.waiting.iter().any(|newcomer| newcomer.name == *name);
-        let committed: Vec<String> = nobodys.into_iter().filter(waits).collect();
-        // Where that fails, the disk is full, say, they are written again with the first answer, or removed at the next start.
-        drop(self.forget(&committed));
-        Ok(())
+        // Identifiers that were committed stay, although their answers were not: of those the log may hold all but the sync, and a
+        // kill brings them back. Whoever sends an answer again writes them again; the next start removes those of nobody.
+        self.read().map(drop).map_err(|e| files::error(&self.folder, e))
     }
 
     /// Removes the identifiers of those who have answered nothing.
@@ -454,7 +451,7 @@ impl Journal {
             if !self.answers.is_autocommit() && self.identities.is_autocommit() {
                 self.identities.execute_batch("BEGIN IMMEDIATE")?;
             }
-            // There already if it could not be removed after the answers' part of a batch failed.
+            // There already if the answers' part of a batch failed.
             let add = "INSERT OR REPLACE INTO identities VALUES (?1, ?2, ?3, ?4)";
             let Identifiers { prolific_pid, study_id, session_id } = identifiers;
             self.identities.execute(add, params![name, prolific_pid, study_id, session_id])?;

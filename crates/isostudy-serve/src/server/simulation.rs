@@ -135,27 +135,10 @@ struct Simulation<'a> {
 type Checked<T = ()> = Result<T, String>;
 
 fn simulate(machine: &Simulated, settings: &Settings, plan: Plan) -> Checked<Outcome> {
-    machine.reset(plan.seed);
+    let mut simulation = Simulation::new(machine, settings, plan);
     if let Some((at, fault)) = plan.fault {
         machine.state().disk.arm(at, fault);
     }
-    let mut chance = Chance::new(plan.seed ^ 0x5eed);
-    let panels = [None, Some(0), Some(1), Some(1)];
-    let count = if plan.wild { 2 + chance.below(5) } else { 2 };
-    let client = |panel| Client { panel, ..Client::default() };
-    let clients = (0..count).map(|number| client(panels[number % panels.len()])).collect();
-    let mut simulation = Simulation {
-        machine,
-        settings,
-        plan,
-        chance,
-        people: People::default(),
-        clients,
-        network: Vec::new(),
-        server: None,
-        ends: 0,
-        export: String::new(),
-    };
     simulation.run()?;
     let Simulation { people, ends, export, .. } = simulation;
     let disk = &machine.state().disk;
@@ -164,7 +147,28 @@ fn simulate(machine: &Simulated, settings: &Settings, plan: Plan) -> Checked<Out
     Ok(Outcome { sessions: people.answered(), answers, operations, failed, ends, export })
 }
 
-impl Simulation<'_> {
+impl<'a> Simulation<'a> {
+    fn new(machine: &'a Simulated, settings: &'a Settings, plan: Plan) -> Self {
+        machine.reset(plan.seed);
+        let mut chance = Chance::new(plan.seed ^ 0x5eed);
+        let panels = [None, Some(0), Some(1), Some(1)];
+        let count = if plan.wild { 2 + chance.below(5) } else { 2 };
+        let client = |panel| Client { panel, ..Client::default() };
+        let clients = (0..count).map(|number| client(panels[number % panels.len()])).collect();
+        Self {
+            machine,
+            settings,
+            plan,
+            chance,
+            people: People::default(),
+            clients,
+            network: Vec::new(),
+            server: None,
+            ends: 0,
+            export: String::new(),
+        }
+    }
+
     fn tell(&self, line: impl FnOnce() -> String) {
         if self.plan.told {
             println!("{:>6} {}", self.machine.state().disk.operations(), line());
@@ -478,16 +482,13 @@ impl Simulation<'_> {
     fn read_folder(&mut self, served: bool) -> Checked {
         let failed = self.machine.state().disk.failed();
         let kept = kept_on(self.machine, FOLDER.as_ref(), "trial");
-        let disk_failed = self.machine.state().disk.failed() != failed;
+        let troubled = self.machine.state().disk.failed() != failed;
         let given = match kept {
             Ok(kept) => kept.given,
             // Nothing was made yet.
-            Err(_) if disk_failed || self.people.sessions.is_empty() => Vec::new(),
+            Err(_) if troubled || self.people.sessions.is_empty() => return Ok(()),
             Err(error) => return Err(format!("the folder cannot be read: {error}")),
         };
-        if disk_failed {
-            return Ok(());
-        }
         self.people.check_rows("the folder", &rows_of(&given)?, served)?;
         let shared = deidentified(&given);
         let without = |given: &[crate::export::Given]| {
@@ -597,9 +598,10 @@ fn sessions(wanted: u64) {
                     }
                 }
                 Err(wrong) => {
-                    done.store(wanted, Ordering::Relaxed);
+                    // The others may end.
+                    let done = done.swap(wanted, Ordering::Relaxed);
                     panic!(
-                        "{wrong}\n\nin simulation {number:?} after {done:?} sessions; repeat it, told line by line, by\n\
+                        "{wrong}\n\nafter {done} sessions; repeat it, told line by line, by\n\
                          ISOSTUDY_SEED={seed} cargo test --release --locked -p isostudy-serve --lib simulation::one -- --nocapture"
                     );
                 }
@@ -652,15 +654,14 @@ fn faults_everywhere(seeds: u64) {
         let mut taken = number.fetch_add(1, Ordering::Relaxed);
         let mut before = 0;
         for seed in (0..seeds).map(|number| first.wrapping_add(number)) {
-            let plan = |fault| Plan { seed, fault, wild: false, told: false };
-            let quiet = simulate(&machine, &settings, plan(None)).unwrap();
-            assert_eq!((quiet.sessions, quiet.answers, quiet.failed), (3, 3 * QUESTIONS, 0));
+            let whole = simulate(&machine, &settings, quiet(seed)).unwrap();
+            assert_eq!((whole.sessions, whole.answers, whole.failed), (3, 3 * QUESTIONS, 0));
             let kinds = machine.state().disk.kinds().to_vec();
             while let Some(&kind) = kinds.get((taken - before) as usize) {
                 let at = taken - before + 1;
                 for &fault in faults_of(kind) {
                     runs.fetch_add(1, Ordering::Relaxed);
-                    let plan = plan(Some((at, fault)));
+                    let plan = Plan { fault: Some((at, fault)), ..quiet(seed) };
                     if let Err(wrong) = attempt(&machine, &settings, plan) {
                         // Once more, told line by line.
                         drop(attempt(&machine, &settings, Plan { told: true, ..plan }));
@@ -703,4 +704,79 @@ fn a_fault_at_every_operation_loses_nothing() {
 #[ignore = "minutes"]
 fn a_fault_at_every_operation_loses_nothing_whatever_is_kept() {
     faults_everywhere(20);
+}
+
+fn quiet(seed: u64) -> Plan {
+    Plan { seed, fault: None, wild: false, told: false }
+}
+
+/// A kill before the sync of a commit leaves its bytes to the system. They are read again, and told to whoever asks; then the
+/// power goes.
+#[test]
+fn what_a_restart_tells_of_is_on_disk() {
+    with_timers(|| {
+        let (machine, settings) = (Simulated::new(), settings());
+        let mut revived = 0;
+        for (ahead, seed) in (1..30).flat_map(|ahead| (0..8).map(move |seed| (ahead, seed))) {
+            let mut simulation = Simulation::new(&machine, &settings, quiet(seed));
+            let mut run = || -> Checked {
+                simulation.start()?;
+                simulation.act(0, false);
+                simulation.deliver(false)?;
+                simulation.act(0, false);
+                machine.state().disk.arm(ahead, Fault::End(End::Killed));
+                simulation.deliver(false)?;
+                machine.state().disk.heal();
+                let told = simulation.clients[0].next;
+                revived += usize::from(simulation.people.answered() > told);
+                simulation.crash(End::PowerGone)?;
+                simulation.check()
+            };
+            run().unwrap_or_else(|wrong| panic!("killed after {ahead} operations, seed {seed}: {wrong}"));
+        }
+        assert!(revived > 0, "no kill came between a write and its sync");
+    });
+}
+
+/// A commit fails at its sync, and a kill brings it back: the answer is there, and who gave it.
+#[test]
+fn answers_that_come_back_have_their_identifiers() {
+    with_timers(|| {
+        let (machine, settings) = (Simulated::new(), settings());
+        let mut revived = 0;
+        for ahead in 1..40 {
+            let mut simulation = Simulation::new(&machine, &settings, quiet(1));
+            let panels = 1;
+            let mut run = || -> Checked {
+                simulation.start()?;
+                simulation.act(panels, false);
+                simulation.deliver(false)?;
+                simulation.act(panels, false);
+                machine.state().disk.arm(ahead, Fault::Error);
+                simulation.deliver(false)?;
+                machine.state().disk.heal();
+                let told = simulation.people.answered();
+                simulation.crash(End::Killed)?;
+                revived += simulation.people.answered() - told;
+                simulation.check_exactly()
+            };
+            run().unwrap_or_else(|wrong| panic!("an error at operation {ahead}: {wrong}"));
+        }
+        assert!(revived > 0, "no sync of a commit failed");
+    });
+}
+
+/// Without it nobody could tell what is missing, and identifiers of those without an answer would stay.
+#[test]
+fn the_count_outlives_the_first_power_cut() {
+    with_timers(|| {
+        let (machine, settings) = (Simulated::new(), settings());
+        for seed in 0..32 {
+            Simulation::new(&machine, &settings, quiet(seed)).start().unwrap();
+            let disk = &mut machine.state().disk;
+            disk.stop(End::PowerGone);
+            disk.restart();
+            assert!(disk.exists(&format!("{FOLDER}/count")), "seed {seed}");
+        }
+    });
 }
