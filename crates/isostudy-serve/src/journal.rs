@@ -1,7 +1,8 @@
 //! Participants and their answers on disk: `answers.sqlite`, and `identities.sqlite` for what a panel says of them.
 //!
 //! Changes are made in batches: what arrives while one is being synced goes into the next, and each is answered after its
-//! batch was committed (write-ahead log, `synchronous = FULL`). A process that is killed loses nothing that was answered.
+//! batch was committed (write-ahead log, `synchronous = FULL`). A process that is killed loses nothing that was answered, nor does
+//! a machine without power; `server/simulation` tries it at every operation of the disk.
 //! Where a file is gone or was cut between two runs, `count` tells: it holds how much there was.
 //!
 //! Somebody is written down with the first answer; until then a form dealt is known in memory alone. All files, and the folder
