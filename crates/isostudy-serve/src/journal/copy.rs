@@ -12,7 +12,7 @@ pub(super) struct Copied<'a> {
 }
 
 impl<'a> Copied<'a> {
-    /// Copies the databases of these names, each with its log.
+    /// Copies the databases of these names, each with its log, and the journal of one that was being made.
     pub(super) fn of(
         machine: &'a dyn Machine,
         folder: &Path,
@@ -22,7 +22,9 @@ impl<'a> Copied<'a> {
         let path = std::env::temp_dir().join(format!("isostudy-{}", hex(machine, 8)));
         machine.make_folder(&path).map_err(|e| failed(&path, e))?;
         let copied = Self { machine, path };
-        for name in databases.iter().flat_map(|name| [(*name).to_owned(), format!("{name}-wal")]) {
+        for name in
+            databases.iter().flat_map(|name| ["", "-wal", "-journal"].map(|end| format!("{name}{end}")))
+        {
             let (there, here) = (folder.join(&name), copied.path.join(&name));
             // Contents alone: permissions to write may be what is missing.
             match machine.copy(&there, &here) {

@@ -57,7 +57,7 @@ const BETWEEN_TRIES: Duration = Duration::from_millis(10);
 
 /// Sees to it that whatever of a journal is there is a file: a pipe would be waited for without end.
 fn regular(folder: &Path) -> Result<(), JournalError> {
-    let beside = |name: &str| ["", "-wal", "-shm"].map(|end| format!("{name}{end}"));
+    let beside = |name: &str| ["", "-wal", "-shm", "-journal"].map(|end| format!("{name}{end}"));
     let others = [LOCK, seal::NAME].map(String::from);
     for name in beside(ANSWERS).into_iter().chain(beside(IDENTITIES)).chain(others) {
         let path = folder.join(name);

@@ -738,6 +738,24 @@ fn what_a_restart_tells_of_is_on_disk() {
     });
 }
 
+/// Where a folder is made, SQLite has a journal and no log yet.
+#[test]
+fn the_first_start_may_end_anywhere() {
+    with_timers(|| {
+        let (machine, settings) = (Simulated::new(), settings());
+        Simulation::new(&machine, &settings, quiet(0)).start().unwrap();
+        let kinds = machine.state().disk.kinds().to_vec();
+        let changes = (1..).zip(kinds).filter(|(_, kind)| *kind != Kind::Look);
+        for (at, seed) in changes.flat_map(|(at, _)| (0..8).map(move |seed| (at, seed))) {
+            let mut simulation = Simulation::new(&machine, &settings, quiet(seed));
+            machine.state().disk.arm(at, Fault::End(End::PowerGone));
+            simulation
+                .start()
+                .unwrap_or_else(|wrong| panic!("no power at operation {at}, seed {seed}: {wrong}"));
+        }
+    });
+}
+
 /// A commit fails at its sync, and a kill brings it back: the answer is there, and who gave it.
 #[test]
 fn answers_that_come_back_have_their_identifiers() {
