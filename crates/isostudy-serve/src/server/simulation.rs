@@ -263,6 +263,7 @@ impl<'a> Simulation<'a> {
                 Ok(server) if !ended => {
                     self.tell(|| "started".into());
                     self.server = Some(server);
+                    self.people.life += 1;
                     return if untroubled { self.check_exactly() } else { Ok(()) };
                 }
                 Err(error) if !ended && untroubled => return Err(format!("it does not start: {error}")),

@@ -36,6 +36,8 @@ pub(super) struct Session {
     sent: Vec<Vec<Said>>,
     certain: Vec<Certain>,
     finished: bool,
+    /// In which life of the server it was dealt.
+    life: u64,
 }
 
 impl Session {
@@ -80,6 +82,8 @@ impl Asked {
 #[derive(Default)]
 pub(super) struct People {
     pub(super) sessions: BTreeMap<String, Session>,
+    /// How often the server was started.
+    pub(super) life: u64,
 }
 
 pub(super) type Rows = BTreeMap<(String, u32), (usize, String, Said)>;
@@ -126,8 +130,9 @@ impl People {
         let session = self.sessions.get_mut(token).expect("it was dealt");
         let all = session.questions.len();
         match (asked, reply.status) {
-            (_, 404) if before == 0 => Ok(()),
-            (_, 404) => wrong("an answer was acknowledged, and its participant is not known"),
+            // Those who have answered nothing are in memory alone.
+            (_, 404) if before == 0 && session.life < self.life => Ok(()),
+            (_, 404) => wrong("a participant is forgotten"),
             (Asked::State { .. }, 200) => {
                 let kept = said["answered"].as_u64().unwrap_or(0) as usize;
                 if kept < before || said["participant"] != session.name {
@@ -180,7 +185,9 @@ impl People {
             questions,
             panel,
             finished: false,
+            life: 0,
         });
+        session.life = self.life;
         let kept = said["answered"].as_u64().unwrap_or(0) as usize;
         if session.panel != panel || session.name != said["participant"] {
             return Err(format!("a form of somebody else was dealt to {panel:?}: {said}"));
