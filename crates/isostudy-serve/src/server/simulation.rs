@@ -5,92 +5,27 @@
 //! nobody sent. The server starts again after every crash, and everybody can go on to the end.
 
 mod chance;
+mod clients;
 mod disk;
 mod machine;
 mod people;
 mod running;
+mod tests;
 
-use super::{Limits, Settings};
+use super::Settings;
 use crate::deidentify::deidentified;
-use crate::journal::{Loss, kept_on};
-use crate::page::{Media, MediaFormat};
-use crate::record::Choice;
+use crate::export::Given;
+use crate::journal::kept_on;
 use chance::Chance;
-use disk::{End, Fault, Kind};
-use isostudy_design::forms::{FormEntry, FormFile, KeyEntry, Role};
+use clients::{Client, body, path};
+use disk::{End, Fault};
 use machine::Simulated;
-use people::{Asked, People, Said, TRAINING, panel_session, rows, rows_of};
+use people::{Asked, People, rows, rows_of};
 use running::{Reply, Running};
-use serde_json::{Value, json};
-use std::net::SocketAddr;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicU64, Ordering};
 
 const TOKEN: &str = "a-token-for-simulations";
 const FOLDER: &str = "/simulated/answers";
-const FORMS: usize = 3;
 const QUESTIONS: usize = 4;
-/// Most requests on their way.
-const NETWORK: usize = 12;
-
-fn settings() -> Settings {
-    let stimulus = |form: usize, place: usize| format!("pair{form}{place}");
-    let form = |form| FormEntry {
-        form,
-        training: vec!["tani".into(); TRAINING],
-        questions: (0..QUESTIONS).map(|place| stimulus(form, place)).collect(),
-    };
-    let entry = |form, place| KeyEntry {
-        form,
-        order: place + TRAINING + 1,
-        stimulus: stimulus(form, place),
-        role: Role::Comparison,
-        question: format!("Q{place}"),
-        object: "sphere".into(),
-        group: "g".into(),
-        left: "a".into(),
-        right: "b".into(),
-    };
-    Settings {
-        file: FormFile {
-            schema: 1,
-            study: "trial".into(),
-            title: "Trial".into(),
-            prompt: "Which?".into(),
-            choices: ["Left".into(), "None".into(), "Right".into()],
-            choices_stacked: None,
-            min_surface_px: None,
-            consent: "Yes".into(),
-            instructions: "Look".into(),
-            loop_ms: 100,
-            page_scale: 1,
-            forms: (1..=FORMS).map(form).collect(),
-        },
-        key: (1..=FORMS).flat_map(|form| (0..QUESTIONS).map(move |place| entry(form, place))).collect(),
-        digest: "d".into(),
-        stimuli: "/simulated/stimuli".into(),
-        media: Media { kinds: vec![(MediaFormat::Gif, 1, 10)], surface: [8, 8] },
-        answers: FOLDER.into(),
-        address: SocketAddr::from(([127, 0, 0, 1], 0)),
-        admin_token: TOKEN.into(),
-        completion: None,
-        public_url: None,
-        limits: Limits { sessions_per_address: 0, ..Limits::default() },
-        loss: Loss::Refuse,
-    }
-}
-
-/// A page in somebody's browser.
-#[derive(Default)]
-struct Client {
-    panel: Option<usize>,
-    token: Option<String>,
-    /// The next place, as far as the page knows.
-    next: usize,
-    /// What is being sent to it.
-    said: Option<Said>,
-    done: bool,
-}
 
 /// What happens in a simulation.
 #[derive(Clone, Copy)]
@@ -153,8 +88,7 @@ impl<'a> Simulation<'a> {
         let mut chance = Chance::new(plan.seed ^ 0x5eed);
         let panels = [None, Some(0), Some(1), Some(1)];
         let count = if plan.wild { 2 + chance.below(5) } else { 2 };
-        let client = |panel| Client { panel, ..Client::default() };
-        let clients = (0..count).map(|number| client(panels[number % panels.len()])).collect();
+        let clients = (0..count).map(|number| Client::of(panels[number % panels.len()])).collect();
         Self {
             machine,
             settings,
@@ -187,8 +121,7 @@ impl<'a> Simulation<'a> {
             self.finish_all()?;
             self.restart()?;
             // What comes late, and after a stop.
-            let late = Client { panel: Some(7), ..Client::default() };
-            self.clients.push(late);
+            self.clients.push(Client::of(Some(7)));
         }
         self.finish_all()?;
         self.machine.state().disk.heal();
@@ -317,61 +250,6 @@ impl<'a> Simulation<'a> {
         if self.plan.wild && self.chance.percent(20) { self.read_folder(false) } else { Ok(()) }
     }
 
-    /// Has a page do the next thing, or something odd.
-    fn act(&mut self, number: usize, wild: bool) {
-        if self.network.len() >= NETWORK {
-            return;
-        }
-        let chance = &mut self.chance;
-        let client = &mut self.clients[number];
-        let Some(token) = client.token.clone() else {
-            self.network.push((number, Asked::Begin { panel: client.panel }));
-            return;
-        };
-        let mut say = || Said {
-            choice: [Choice::L, Choice::Np, Choice::R][chance.below(3)],
-            rt_ms: chance.below(9000) as u32,
-            width: chance.percent(50).then(|| 300 + chance.below(1000) as u32),
-        };
-        let mut asked = Vec::new();
-        if client.next < QUESTIONS {
-            let said = *client.said.get_or_insert_with(&mut say);
-            asked.push(Asked::Answer { token: token.clone(), place: client.next, said });
-        } else if !client.done {
-            asked.push(Asked::Finish { token: token.clone() });
-        }
-        if wild {
-            let other = say();
-            match self.chance.below(100) {
-                0..10 => asked.extend(asked.first().cloned()),
-                10..18 => {
-                    let place = self.chance.below(QUESTIONS.min(client.next + 1));
-                    asked.push(Asked::Answer { token, place, said: other });
-                }
-                18..24 if client.next + 1 < QUESTIONS => {
-                    asked.push(Asked::Answer { token, place: client.next + 1, said: other });
-                }
-                24..32 if client.next > 0 => {
-                    let place = self.chance.below(client.next);
-                    let sent = self.people.sessions[&token].sent(place);
-                    if let Some(&said) = sent.first() {
-                        asked.push(Asked::Answer { token, place, said });
-                    }
-                }
-                32..38 => asked.push(Asked::State { token }),
-                38..42 => client.token = None,
-                42..45 => asked.push(Asked::Finish { token }),
-                _ => {}
-            }
-        }
-        for asked in asked {
-            if let Asked::Answer { token, place, said } = &asked {
-                self.people.send(token, *place, *said);
-            }
-            self.network.push((number, asked));
-        }
-    }
-
     /// Hands some requests to the server at once, and what it says to whoever asked.
     fn deliver(&mut self, wild: bool) -> Checked {
         let Some(server) = &mut self.server else { return Err("no server".into()) };
@@ -412,33 +290,6 @@ impl<'a> Simulation<'a> {
             self.tell(|| format!("ended by itself: {error}"));
         }
         if ended || worked.is_err() { self.again() } else { Ok(()) }
-    }
-
-    /// What a page makes of a reply.
-    fn hear(&mut self, number: usize, asked: &Asked, reply: &Reply) {
-        let client = &mut self.clients[number];
-        if client.token.as_deref() != asked.token() {
-            return;
-        }
-        let said: Value = serde_json::from_str(&reply.text).unwrap_or_default();
-        match (asked, reply.status) {
-            (Asked::Begin { .. } | Asked::State { .. }, 200) => {
-                client.token = said["token"].as_str().map(str::to_owned);
-                client.next = said["answered"].as_u64().unwrap_or(0) as usize;
-                client.said = None;
-            }
-            (Asked::Answer { place, .. }, 200) if *place == client.next => {
-                client.next += 1;
-                client.said = None;
-            }
-            (Asked::Finish { .. }, 200) => client.done = true,
-            (_, 404) => *client = Client { panel: client.panel, ..Client::default() },
-            (_, 409) => {
-                let token = client.token.clone().expect("it asked with it");
-                self.network.push((number, Asked::State { token }));
-            }
-            _ => {}
-        }
     }
 
     /// Reads every export, and holds it against what was told.
@@ -492,7 +343,7 @@ impl<'a> Simulation<'a> {
         };
         self.people.check_rows("the folder", &rows_of(&given)?, served)?;
         let shared = deidentified(&given);
-        let without = |given: &[crate::export::Given]| {
+        let without = |given: &[Given]| {
             let mut answers: Vec<_> = given
                 .iter()
                 .map(|one| {
@@ -507,295 +358,4 @@ impl<'a> Simulation<'a> {
         }
         Ok(())
     }
-}
-
-fn body(people: &People, asked: &Asked) -> String {
-    let body = match asked {
-        Asked::Begin { panel: None } => json!({}),
-        Asked::Begin { panel: Some(panel) } => {
-            json!({"prolific_pid": "5f9", "study_id": "61a", "session_id": panel_session(*panel)})
-        }
-        Asked::State { token } | Asked::Finish { token } => json!({ "token": token }),
-        Asked::Answer { token, place, said } => {
-            let stimulus = &people.sessions[token].questions[*place];
-            let screen = said.width.map(|width| {
-                json!({
-                    "viewport_width": width, "viewport_height": 800, "pixel_ratio": 1.5, "surface_px": 300,
-                    "layout": "beside", "input": "mouse", "dropped": 0, "hidden_ms": 0, "shown_as": "gif",
-                })
-            });
-            json!({
-                "token": token, "order": place + TRAINING + 1, "stimulus": stimulus,
-                "choice": said.choice, "rt_ms": said.rt_ms, "screen": screen,
-            })
-        }
-    };
-    body.to_string()
-}
-
-fn path(asked: &Asked) -> &'static str {
-    match asked {
-        Asked::Begin { .. } => "/api/sessions",
-        Asked::State { .. } => "/api/state",
-        Asked::Answer { .. } => "/api/answers",
-        Asked::Finish { .. } => "/api/finish",
-    }
-}
-
-/// Simulates, and turns a panic into what is wrong.
-fn attempt(machine: &Simulated, settings: &Settings, plan: Plan) -> Checked<Outcome> {
-    let simulated = catch_unwind(AssertUnwindSafe(|| simulate(machine, settings, plan)));
-    simulated.unwrap_or_else(|panic| {
-        let text = panic.downcast_ref::<String>().map(String::as_str);
-        Err(format!("panic: {}", text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("?")))
-    })
-}
-
-/// Handlers set timers, which never run out.
-fn with_timers(work: impl FnOnce()) {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
-    let _inside = runtime.enter();
-    work();
-}
-
-/// Each thread has simulations of its own, and no thread is in one. The first panic of one is the caller's.
-fn on_all_threads(work: impl Fn() + Sync) {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(|| with_timers(&work))).collect();
-        for thread in threads {
-            if let Err(panic) = thread.join() {
-                std::panic::resume_unwind(panic);
-            }
-        }
-    });
-}
-
-fn wild(seed: u64) -> Plan {
-    Plan { seed, fault: None, wild: true, told: false }
-}
-
-/// The first seed: one for all of a run, as for the other random tests.
-fn first_seed() -> u64 {
-    let text = std::env::var("PROPTEST_RNG_SEED").ok();
-    text.and_then(|text| text.parse().ok()).unwrap_or(20261123)
-}
-
-/// Simulates until there were so many sessions.
-fn sessions(wanted: u64) {
-    let first = Chance::new(first_seed()).next();
-    let (number, done) = (AtomicU64::new(0), AtomicU64::new(0));
-    let totals: [AtomicU64; 4] = Default::default();
-    on_all_threads(|| {
-        let (machine, settings) = (Simulated::new(), settings());
-        while done.load(Ordering::Relaxed) < wanted {
-            let seed = first.wrapping_add(number.fetch_add(1, Ordering::Relaxed));
-            match attempt(&machine, &settings, wild(seed)) {
-                Ok(Outcome { sessions, answers, operations, failed, ends, .. }) => {
-                    done.fetch_add(sessions as u64, Ordering::Relaxed);
-                    let counts = [answers as u64, operations, failed, ends];
-                    for (total, count) in totals.iter().zip(counts) {
-                        total.fetch_add(count, Ordering::Relaxed);
-                    }
-                }
-                Err(wrong) => {
-                    // The others may end.
-                    let done = done.swap(wanted, Ordering::Relaxed);
-                    panic!(
-                        "{wrong}\n\nafter {done} sessions; repeat it, told line by line, by\n\
-                         ISOSTUDY_SEED={seed} cargo test --release --locked -p isostudy-serve --lib simulation::one -- --nocapture"
-                    );
-                }
-            }
-        }
-    });
-    let [answers, operations, failed, ends] = totals.map(AtomicU64::into_inner);
-    println!(
-        "{} simulations, {} sessions, {answers} acknowledged answers, {operations} operations of the disk, {failed} of which failed, \
-         {ends} crashes",
-        number.into_inner(),
-        done.into_inner(),
-    );
-    assert!(failed > 0 && ends > 0, "nothing went wrong, so that nothing was tested");
-}
-
-#[test]
-fn every_acknowledged_answer_is_in_every_export_once() {
-    sessions(2_000);
-}
-
-#[test]
-#[ignore = "minutes"]
-fn every_acknowledged_answer_is_in_every_export_once_in_many_sessions() {
-    sessions(200_000);
-}
-
-/// `ISOSTUDY_SEED=n` repeats a simulation that failed; without it one is simulated twice, and must be the same.
-#[test]
-fn one() {
-    let given = std::env::var("ISOSTUDY_SEED").ok().and_then(|text| text.parse().ok());
-    let plan = Plan { told: given.is_some(), ..wild(given.unwrap_or(first_seed())) };
-    with_timers(|| {
-        let (machine, settings) = (Simulated::new(), settings());
-        let once = simulate(&machine, &settings, plan).unwrap_or_else(|wrong| panic!("{wrong}"));
-        let again = simulate(&machine, &settings, Plan { told: false, ..plan });
-        assert_eq!(again, Ok(once), "a seed says all");
-    });
-}
-
-/// A short script of two people, a stop, and a third. Each of its operations fails in each way, for each of so many seeds: of what
-/// was not synced, each keeps something else.
-fn faults_everywhere(seeds: u64) {
-    let first = Chance::new(first_seed()).next();
-    let number = AtomicU64::new(0);
-    let (operations, runs) = (AtomicU64::new(0), AtomicU64::new(0));
-    on_all_threads(|| {
-        let (machine, settings) = (Simulated::new(), settings());
-        // One thread takes all faults at an operation.
-        let mut taken = number.fetch_add(1, Ordering::Relaxed);
-        let mut before = 0;
-        for seed in (0..seeds).map(|number| first.wrapping_add(number)) {
-            let whole = simulate(&machine, &settings, quiet(seed)).unwrap();
-            assert_eq!((whole.sessions, whole.answers, whole.failed), (3, 3 * QUESTIONS, 0));
-            let kinds = machine.state().disk.kinds().to_vec();
-            while let Some(&kind) = kinds.get((taken - before) as usize) {
-                let at = taken - before + 1;
-                for &fault in faults_of(kind) {
-                    runs.fetch_add(1, Ordering::Relaxed);
-                    let plan = Plan { fault: Some((at, fault)), ..quiet(seed) };
-                    if let Err(wrong) = attempt(&machine, &settings, plan) {
-                        // Once more, told line by line.
-                        drop(attempt(&machine, &settings, Plan { told: true, ..plan }));
-                        panic!("{fault:?} at operation {at} of {}, seed {seed}: {wrong}", kinds.len());
-                    }
-                }
-                taken = number.fetch_add(1, Ordering::Relaxed);
-            }
-            before += kinds.len() as u64;
-            operations.store(before, Ordering::Relaxed);
-        }
-    });
-    println!("{} operations, {} faults", operations.into_inner(), runs.into_inner());
-}
-
-/// Those that differ from the same at another operation: a process that ends before a read might as well end before the next
-/// write, and a disk that is full before a sync is full at the next write.
-fn faults_of(kind: Kind) -> &'static [Fault] {
-    const ALL: [Fault; 6] = [
-        Fault::Error,
-        Fault::End(End::Killed),
-        Fault::End(End::PowerGone),
-        Fault::Short,
-        Fault::Full(5),
-        Fault::Full(60),
-    ];
-    match kind {
-        Kind::Look => &ALL[..1],
-        Kind::Other => &ALL[..3],
-        Kind::Write => &ALL,
-    }
-}
-
-#[test]
-fn a_fault_at_every_operation_loses_nothing() {
-    faults_everywhere(1);
-}
-
-#[test]
-#[ignore = "minutes"]
-fn a_fault_at_every_operation_loses_nothing_whatever_is_kept() {
-    faults_everywhere(20);
-}
-
-fn quiet(seed: u64) -> Plan {
-    Plan { seed, fault: None, wild: false, told: false }
-}
-
-/// A kill before the sync of a commit leaves its bytes to the system. They are read again, and told to whoever asks; then the
-/// power goes.
-#[test]
-fn what_a_restart_tells_of_is_on_disk() {
-    with_timers(|| {
-        let (machine, settings) = (Simulated::new(), settings());
-        let mut revived = 0;
-        for (ahead, seed) in (1..30).flat_map(|ahead| (0..8).map(move |seed| (ahead, seed))) {
-            let mut simulation = Simulation::new(&machine, &settings, quiet(seed));
-            let mut run = || -> Checked {
-                simulation.start()?;
-                simulation.act(0, false);
-                simulation.deliver(false)?;
-                simulation.act(0, false);
-                machine.state().disk.arm(ahead, Fault::End(End::Killed));
-                simulation.deliver(false)?;
-                machine.state().disk.heal();
-                let told = simulation.clients[0].next;
-                revived += usize::from(simulation.people.answered() > told);
-                simulation.crash(End::PowerGone)?;
-                simulation.check()
-            };
-            run().unwrap_or_else(|wrong| panic!("killed after {ahead} operations, seed {seed}: {wrong}"));
-        }
-        assert!(revived > 0, "no kill came between a write and its sync");
-    });
-}
-
-/// Where a folder is made, SQLite has a journal and no log yet.
-#[test]
-fn the_first_start_may_end_anywhere() {
-    with_timers(|| {
-        let (machine, settings) = (Simulated::new(), settings());
-        Simulation::new(&machine, &settings, quiet(0)).start().unwrap();
-        let kinds = machine.state().disk.kinds().to_vec();
-        let changes = (1..).zip(kinds).filter(|(_, kind)| *kind != Kind::Look);
-        for (at, seed) in changes.flat_map(|(at, _)| (0..8).map(move |seed| (at, seed))) {
-            let mut simulation = Simulation::new(&machine, &settings, quiet(seed));
-            machine.state().disk.arm(at, Fault::End(End::PowerGone));
-            simulation
-                .start()
-                .unwrap_or_else(|wrong| panic!("no power at operation {at}, seed {seed}: {wrong}"));
-        }
-    });
-}
-
-/// A commit fails at its sync, and a kill brings it back: the answer is there, and who gave it.
-#[test]
-fn answers_that_come_back_have_their_identifiers() {
-    with_timers(|| {
-        let (machine, settings) = (Simulated::new(), settings());
-        let mut revived = 0;
-        for ahead in 1..40 {
-            let mut simulation = Simulation::new(&machine, &settings, quiet(1));
-            let panels = 1;
-            let mut run = || -> Checked {
-                simulation.start()?;
-                simulation.act(panels, false);
-                simulation.deliver(false)?;
-                simulation.act(panels, false);
-                machine.state().disk.arm(ahead, Fault::Error);
-                simulation.deliver(false)?;
-                machine.state().disk.heal();
-                let told = simulation.people.answered();
-                simulation.crash(End::Killed)?;
-                revived += simulation.people.answered() - told;
-                simulation.check_exactly()
-            };
-            run().unwrap_or_else(|wrong| panic!("an error at operation {ahead}: {wrong}"));
-        }
-        assert!(revived > 0, "no sync of a commit failed");
-    });
-}
-
-/// Without it nobody could tell what is missing, and identifiers of those without an answer would stay.
-#[test]
-fn the_count_outlives_the_first_power_cut() {
-    with_timers(|| {
-        let (machine, settings) = (Simulated::new(), settings());
-        for seed in 0..32 {
-            Simulation::new(&machine, &settings, quiet(seed)).start().unwrap();
-            let disk = &mut machine.state().disk;
-            disk.stop(End::PowerGone);
-            disk.restart();
-            assert!(disk.exists(&format!("{FOLDER}/count")), "seed {seed}");
-        }
-    });
 }
