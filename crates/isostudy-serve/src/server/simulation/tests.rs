@@ -277,14 +277,14 @@ fn the_first_start_may_end_anywhere() {
     });
 }
 
-/// A commit fails at its sync, and a kill brings it back: the answer is there, and who gave it.
+/// A commit fails at its sync, and a kill brings it back: the answer is there, and who gave it, also when the power goes then.
 #[test]
 fn answers_that_come_back_have_their_identifiers() {
     with_timers(|| {
         let (machine, settings) = (Simulated::new(), settings());
         let mut revived = 0;
-        for ahead in 1..40 {
-            let mut simulation = Simulation::new(&machine, &settings, quiet(1));
+        for (ahead, seed) in (1..40).flat_map(|ahead| (0..8).map(move |seed| (ahead, seed))) {
+            let mut simulation = Simulation::new(&machine, &settings, quiet(seed));
             let panels = 1;
             let mut run = || -> Checked {
                 simulation.start()?;
@@ -297,9 +297,10 @@ fn answers_that_come_back_have_their_identifiers() {
                 let told = simulation.people.answered();
                 simulation.crash(End::Killed)?;
                 revived += simulation.people.answered() - told;
-                simulation.check_exactly()
+                simulation.check_exactly()?;
+                simulation.crash(End::PowerGone)
             };
-            run().unwrap_or_else(|wrong| panic!("an error at operation {ahead}: {wrong}"));
+            run().unwrap_or_else(|wrong| panic!("an error at operation {ahead}, seed {seed}: {wrong}"));
         }
         assert!(revived > 0, "no sync of a commit failed");
     });
