@@ -1,7 +1,8 @@
 //! Participants and their answers on disk: `answers.sqlite`, and `identities.sqlite` for what a panel says of them.
 //!
 //! Changes are made in batches: what arrives while one is being synced goes into the next, and each is answered after its
-//! batch was committed (write-ahead log, `synchronous = FULL`). A process that is killed loses nothing that was answered.
+//! batch was committed (write-ahead log, `synchronous = FULL`). A process that is killed loses nothing that was answered, nor does
+//! a machine without power; `server/simulation` tries it at every operation of the disk.
 //! Where a file is gone or was cut between two runs, `count` tells: it holds how much there was.
 //!
 //! Somebody is written down with the first answer; until then a form dealt is known in memory alone. All files, and the folder
@@ -9,7 +10,6 @@
 
 mod copy;
 mod files;
-mod owned;
 mod place;
 mod seal;
 mod summary;
@@ -19,12 +19,17 @@ mod waiting;
 #[cfg(test)]
 mod tests;
 
+#[cfg(test)]
+pub(crate) use files::kept_on;
 pub use files::{Kept, kept};
 pub use seal::Held;
 pub use summary::Summary;
+#[cfg(test)]
+pub(crate) use thread::{Desk, desk};
 pub use thread::{Handle, Keeper, Unsaved, start};
 
 use crate::export::Given;
+use crate::machine::{Machine, Owned, System};
 use crate::record::{Answer, Choice, Identifiers, Refusal, check, first_place};
 use copy::Copied;
 use isostudy_design::forms::{FormEntry, FormFile};
@@ -33,8 +38,8 @@ use rusqlite::{Connection, params};
 use seal::{Seal, Sealed};
 use serde::Serialize;
 use std::collections::HashMap;
-use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use waiting::{Newcomer, Waiting};
 
 /// Whoever has sent nothing for so long is taken to have given up; the form is dealt again.
@@ -165,6 +170,7 @@ struct Person {
 
 /// The journal of one study; one process has it at a time.
 pub struct Journal {
+    machine: Arc<dyn Machine>,
     folder: PathBuf,
     answers: Connection,
     identities: Connection,
@@ -178,7 +184,7 @@ pub struct Journal {
     seal: Seal,
     place: Place,
     /// Held as long as the journal is.
-    _lock: File,
+    _lock: Arc<dyn Owned>,
 }
 
 impl std::hash::Hash for Identifiers {
@@ -194,43 +200,57 @@ impl Journal {
     /// # Errors
     /// [`JournalError`].
     pub fn open(folder: &Path, file: &FormFile, digest: &str, loss: Loss) -> Result<Self, JournalError> {
+        Self::open_on(Arc::new(System), folder, file, digest, loss)
+    }
+
+    pub(crate) fn open_on(
+        machine: Arc<dyn Machine>,
+        folder: &Path,
+        file: &FormFile,
+        digest: &str,
+        loss: Loss,
+    ) -> Result<Self, JournalError> {
         let failed = |source| JournalError::Folder { path: folder.into(), source };
         let database = |source| files::error(folder, source);
-        let lock = files::lock(folder)?;
-        let sealed = Sealed::read(folder).map_err(failed)?;
+        let lock: Arc<dyn Owned> = files::lock(&*machine, folder)?.into();
+        let sealed = Sealed::read(&*machine, folder).map_err(failed)?;
         // Whatever SQLite opens it changes: it makes files, begins logs anew and throws away those of a database that is gone. A
         // folder that is refused stays as it is, so a copy is looked at first.
         let whole = {
-            let copy = Copied::of(folder, &[files::ANSWERS, files::IDENTITIES])?;
-            let lock = lock.try_clone().map_err(failed)?;
-            let (copied, _) = Self::at(copy.folder(), folder, file, digest, lock)?;
+            let copy = Copied::of(&*machine, folder, &[files::ANSWERS, files::IDENTITIES])?;
+            let (copied, _) = Self::at(&machine, copy.folder(), folder, file, digest, &lock)?;
             compare(folder, copied.held, sealed, loss)?
         };
-        let (mut journal, nobodys) = Self::at(folder, folder, file, digest, lock)?;
+        let (mut journal, nobodys) = Self::at(&machine, folder, folder, file, digest, &lock)?;
         journal.uncounted = sealed == Sealed::Nothing && journal.held != Held::default();
         files::may_tidy(&journal.answers)
             .and_then(|()| files::may_tidy(&journal.identities))
             .map_err(database)?;
+        files::settle(&*journal.machine, folder, files::ANSWERS, &journal.answers)?;
+        files::settle(&*journal.machine, folder, files::IDENTITIES, &journal.identities)?;
         // After a loss they may be all that is left of somebody.
         if whole {
             journal.forget(&nobodys).map_err(database)?;
         }
         journal.seal().and_then(|()| journal.seal.sync()).map_err(failed)?;
+        // The name of `count` too: without it nobody could tell what is missing.
+        journal.machine.sync_folder(folder).map_err(failed)?;
         Ok(journal)
     }
 
     /// Opens and reads the files in `from`, which messages call `folder`. Returns names with identifiers and without an answer too.
     fn at(
+        machine: &Arc<dyn Machine>,
         from: &Path,
         folder: &Path,
         file: &FormFile,
         digest: &str,
-        lock: File,
+        lock: &Arc<dyn Owned>,
     ) -> Result<(Self, Vec<String>), JournalError> {
         let failed = |source| JournalError::Folder { path: folder.into(), source };
         let database = |source| files::error(folder, source);
-        let files::Opened { answers, identities } = files::open(from, folder)?;
-        let seal = Seal::open(from).map_err(failed)?.0;
+        let files::Opened { answers, identities } = files::open(&**machine, from, folder)?;
+        let seal = Seal::open(&**machine, from).map_err(failed)?;
         match files::study(&answers).map_err(database)? {
             None => {
                 let add = "INSERT INTO study VALUES (?1, ?2)";
@@ -242,6 +262,7 @@ impl Journal {
             Some(_) => {}
         }
         let mut journal = Self {
+            machine: Arc::clone(machine),
             folder: folder.into(),
             answers,
             identities,
@@ -254,7 +275,7 @@ impl Journal {
             uncounted: false,
             seal,
             place: Place::default(),
-            _lock: lock,
+            _lock: Arc::clone(lock),
         };
         let nobodys = journal.read().map_err(database)?;
         // Whatever SQLite makes beside its files it has made by now.
@@ -291,12 +312,9 @@ impl Journal {
             }
         }
         self.waiting.turned_back();
-        let nobodys = self.read().map_err(|e| files::error(&self.folder, e))?;
-        let waits = |name: &String| self.waiting.iter().any(|newcomer| newcomer.name == *name);
-        let committed: Vec<String> = nobodys.into_iter().filter(waits).collect();
-        // Where that fails, the disk is full, say, they are written again with the first answer, or removed at the next start.
-        drop(self.forget(&committed));
-        Ok(())
+        // Identifiers that were committed stay, although their answers were not: of those the log may hold all but the sync, and a
+        // kill brings them back. Whoever sends an answer again writes them again; the next start removes those of nobody.
+        self.read().map(drop).map_err(|e| files::error(&self.folder, e))
     }
 
     /// Removes the identifiers of those who have answered nothing.
@@ -387,15 +405,23 @@ impl Journal {
         let least = load.iter().min().copied().unwrap_or_default();
         let free: Vec<usize> = (1..=load.len()).filter(|form| load[form - 1] == least).collect();
         let newcomer = Newcomer {
-            name: random_hex(8),
-            token: random_hex(16),
-            form: free[random_index(free.len())],
+            name: hex(&*self.machine, 8),
+            token: hex(&*self.machine, 16),
+            form: free[self.random_index(free.len())],
             identifiers: given,
             since_ms: now_ms,
         };
         let dealt = self.welcome(&newcomer);
         self.waiting.add(newcomer)?;
         Ok(dealt)
+    }
+
+    /// One of so many, by chance.
+    fn random_index(&self, count: usize) -> usize {
+        let mut number = [0; 8];
+        self.machine.random(&mut number);
+        // Some are likelier than others by less than one in 10^14.
+        (u64::from_ne_bytes(number) % count as u64) as usize
     }
 
     /// Where somebody stands.
@@ -426,7 +452,7 @@ impl Journal {
             if !self.answers.is_autocommit() && self.identities.is_autocommit() {
                 self.identities.execute_batch("BEGIN IMMEDIATE")?;
             }
-            // There already if it could not be removed after the answers' part of a batch failed.
+            // There already if the answers' part of a batch failed.
             let add = "INSERT OR REPLACE INTO identities VALUES (?1, ?2, ?3, ?4)";
             let Identifiers { prolific_pid, study_id, session_id } = identifiers;
             self.identities.execute(add, params![name, prolific_pid, study_id, session_id])?;
@@ -566,14 +592,11 @@ fn compare(folder: &Path, found: Held, sealed: Sealed, loss: Loss) -> Result<boo
 /// # Panics
 /// If the system has no random numbers, in which case nothing here is safe.
 pub fn random_hex(bytes: usize) -> String {
-    let mut buffer = [0; 16];
-    getrandom::fill(&mut buffer[..bytes]).expect("the system gives random numbers");
-    buffer[..bytes].iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(&System, bytes)
 }
 
-/// One of so many, by chance.
-fn random_index(count: usize) -> usize {
-    let number = getrandom::u64().expect("the system gives random numbers");
-    // Some are likelier than others by less than one in 10^14.
-    (number % count as u64) as usize
+fn hex(machine: &dyn Machine, bytes: usize) -> String {
+    let mut buffer = [0; 16];
+    machine.random(&mut buffer[..bytes]);
+    buffer[..bytes].iter().map(|byte| format!("{byte:02x}")).collect()
 }

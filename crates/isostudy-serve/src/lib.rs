@@ -20,6 +20,7 @@ pub mod download;
 pub mod export;
 pub mod journal;
 mod log;
+mod machine;
 pub mod page;
 pub mod record;
 pub mod screen;

@@ -9,11 +9,14 @@ mod limits;
 mod pace;
 mod stimuli;
 
+#[cfg(test)]
+mod simulation;
+
 pub use host::{NoPublicUrl, PublicUrl};
 pub use limits::Limits;
 
 use crate::journal::{self, Handle, Held, Journal, JournalError, Loss};
-use crate::log;
+use crate::machine::{Machine, System};
 use crate::page::{self, Media, forms_js};
 use addresses::{Budgets, Peer};
 use axum::Router;
@@ -90,6 +93,7 @@ pub enum ServeError {
 }
 
 struct Shared {
+    machine: Arc<dyn Machine>,
     settings: Settings,
     journal: Handle,
     forms_js: Bytes,
@@ -103,6 +107,26 @@ struct Shared {
 }
 
 impl Shared {
+    fn new(
+        settings: Settings,
+        machine: Arc<dyn Machine>,
+        journal: Handle,
+        stimuli: BTreeSet<String>,
+    ) -> Self {
+        let most = settings.limits.sessions_per_address;
+        Self {
+            forms_js: Bytes::from(forms_js(&settings.file, &settings.digest, &settings.media, true)),
+            settings,
+            machine,
+            journal,
+            stimuli,
+            turns: stimuli::turns(),
+            sessions: (most > 0).then(|| Budgets::new(most, SESSIONS_BACK)),
+            tries: Budgets::new(TRIES.0, TRIES.1),
+            wrong_tokens: AtomicU64::new(0),
+        }
+    }
+
     /// Whoever sent a request.
     fn client(&self, peer: Peer, headers: &HeaderMap) -> IpAddr {
         addresses::client(peer, headers, self.settings.public_url.is_some())
@@ -140,10 +164,11 @@ pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr, Held)) -> Result
     if settings.media.kinds.is_empty() {
         return Err(ServeError::Stimulus(settings.stimuli));
     }
+    let machine = Arc::new(System);
     let journal = Journal::open(&settings.answers, &settings.file, &settings.digest, settings.loss)?;
     let held = journal.held();
     if journal.is_uncounted() {
-        log::note(format!(
+        machine.note(format!(
             "warning: {} holds {held}, but its file `count` is missing or empty, so nobody can tell whether answers are missing; \
              it is written anew",
             settings.answers.display()
@@ -152,20 +177,7 @@ pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr, Held)) -> Result
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     let (handle, mut keeper) = journal::start(journal);
     let Settings { address, limits, .. } = settings;
-    let forms_js = Bytes::from(forms_js(&settings.file, &settings.digest, &settings.media, true));
-    let most = limits.sessions_per_address;
-    let sessions = (most > 0).then(|| Budgets::new(most, SESSIONS_BACK));
-    let tries = Budgets::new(TRIES.0, TRIES.1);
-    let shared = Arc::new(Shared {
-        settings,
-        journal: handle,
-        forms_js,
-        stimuli,
-        turns: stimuli::turns(),
-        sessions,
-        tries,
-        wrong_tokens: AtomicU64::new(0),
-    });
+    let shared = Arc::new(Shared::new(settings, machine, handle, stimuli));
     let served = runtime.block_on(async {
         let listener = limits::listen(address)?;
         ready(listener.local_addr()?, held);

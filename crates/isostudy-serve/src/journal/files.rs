@@ -1,14 +1,12 @@
 //! The files: `answers.sqlite`, `identities.sqlite`, and `lock`.
 
 use super::copy::Copied;
-use super::owned::owned;
 use super::{JournalError, seal};
 use crate::export::Given;
+use crate::machine::{Machine, Owned, System};
 use crate::record::{Answer, Choice, Identifiers};
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
-use std::fs::{DirBuilder, File};
-use std::os::unix::fs::DirBuilderExt;
 use std::path::Path;
 use std::time::Duration;
 
@@ -35,17 +33,17 @@ const IDENTITIES_SCHEMA: &str = "
 
 /// Makes a folder if it is not there, and takes it for this process: two servers on one file would each know half of the
 /// participants.
-pub(super) fn lock(folder: &Path) -> Result<File, JournalError> {
+pub(super) fn lock(machine: &dyn Machine, folder: &Path) -> Result<Box<dyn Owned>, JournalError> {
     let failed = |source| JournalError::Folder { path: folder.into(), source };
     if std::fs::metadata(folder).is_ok_and(|found| !found.is_dir()) {
         return Err(failed(std::io::Error::other("not a folder")));
     }
-    DirBuilder::new().recursive(true).mode(0o700).create(folder).map_err(failed)?;
+    machine.make_folders(folder).map_err(failed)?;
     regular(folder)?;
-    let lock = owned(&folder.join(LOCK)).map_err(failed)?;
+    let lock = machine.open(&folder.join(LOCK)).map_err(failed)?;
     // A program that was started while the folder was open inherits the lock for the moment until it runs.
     for _ in 0..TRIES {
-        if lock.try_lock().is_ok() {
+        if lock.try_lock() {
             return Ok(lock);
         }
         std::thread::sleep(BETWEEN_TRIES);
@@ -59,7 +57,7 @@ const BETWEEN_TRIES: Duration = Duration::from_millis(10);
 
 /// Sees to it that whatever of a journal is there is a file: a pipe would be waited for without end.
 fn regular(folder: &Path) -> Result<(), JournalError> {
-    let beside = |name: &str| ["", "-wal", "-shm"].map(|end| format!("{name}{end}"));
+    let beside = |name: &str| ["", "-wal", "-shm", "-journal"].map(|end| format!("{name}{end}"));
     let others = [LOCK, seal::NAME].map(String::from);
     for name in beside(ANSWERS).into_iter().chain(beside(IDENTITIES)).chain(others) {
         let path = folder.join(name);
@@ -78,14 +76,14 @@ pub(super) struct Opened {
 
 /// Opens the databases in a folder, which messages call `folder`, and makes what is not there. Until [`may_tidy`] logs are not
 /// removed.
-pub(super) fn open(from: &Path, folder: &Path) -> Result<Opened, JournalError> {
+pub(super) fn open(machine: &dyn Machine, from: &Path, folder: &Path) -> Result<Opened, JournalError> {
     let failed = |source| JournalError::Folder { path: folder.into(), source };
     let database = |name: &str, schema: &str| {
         let path = from.join(name);
         // What SQLite puts beside it gets the same permissions.
-        owned(&path).map_err(failed)?;
+        machine.open(&path).map_err(failed)?;
         let open = || -> rusqlite::Result<Connection> {
-            let connection = Connection::open(&path)?;
+            let connection = Connection::open_with_flags_and_vfs(&path, OpenFlags::default(), machine.vfs())?;
             connection.busy_timeout(Duration::from_millis(500))?;
             connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
             connection.pragma_update(None, "journal_mode", "WAL")?;
@@ -104,6 +102,27 @@ pub(super) fn open(from: &Path, folder: &Path) -> Result<Opened, JournalError> {
 /// Nothing is missing: the log may be merged into the database, and removed, when it is closed.
 pub(super) fn may_tidy(database: &Connection) -> rusqlite::Result<()> {
     database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false).map(drop)
+}
+
+/// Has on disk what a log holds. A server that was killed may have written to it and not synced it: that is read again, and told
+/// to whoever asks, and the power may go after that.
+pub(super) fn settle(
+    machine: &dyn Machine,
+    folder: &Path,
+    name: &str,
+    database: &Connection,
+) -> Result<(), JournalError> {
+    // The log alone is not enough after a sync that failed: the system may take its bytes for written.
+    let merged = database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()));
+    if let Err(source) = merged {
+        // Then the log stays, so that answers can be read on a full disk too.
+        if source.sqlite_error_code() != Some(rusqlite::ErrorCode::DiskFull) {
+            return Err(error(folder, source));
+        }
+    }
+    let log = folder.join(format!("{name}-wal"));
+    let synced = machine.open(&log).and_then(|log| log.sync());
+    synced.map_err(|source| JournalError::Folder { path: log, source })
 }
 
 pub(super) fn error(folder: &Path, source: rusqlite::Error) -> JournalError {
@@ -179,12 +198,16 @@ pub struct Kept {
 /// # Errors
 /// [`JournalError`]; [`JournalError::OtherStudy`] only for another study, not for another version of this one.
 pub fn kept(folder: &Path, study: &str) -> Result<Kept, JournalError> {
+    kept_on(&System, folder, study)
+}
+
+pub(crate) fn kept_on(machine: &dyn Machine, folder: &Path, study: &str) -> Result<Kept, JournalError> {
     regular(folder)?;
-    let (found, given) = match read(folder) {
+    let (found, given) = match read(machine, folder) {
         // SQLite reads a log only where it may write beside it.
         Err(error) if cannot_write(&error) => {
-            let copy = Copied::of(folder, &[ANSWERS])?;
-            read(copy.folder())
+            let copy = Copied::of(machine, folder, &[ANSWERS])?;
+            read(machine, copy.folder())
         }
         found => found,
     }
@@ -199,9 +222,9 @@ pub fn kept(folder: &Path, study: &str) -> Result<Kept, JournalError> {
 
 type Found = (Option<(String, String)>, Vec<Given>);
 
-fn read(folder: &Path) -> rusqlite::Result<Found> {
+fn read(machine: &dyn Machine, folder: &Path) -> rusqlite::Result<Found> {
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let mut connection = Connection::open_with_flags(folder.join(ANSWERS), flags)?;
+    let mut connection = Connection::open_with_flags_and_vfs(folder.join(ANSWERS), flags, machine.vfs())?;
     connection.busy_timeout(Duration::from_secs(5))?;
     connection.pragma_update(None, "query_only", true)?;
     // One moment of a file that a server may be writing to.

@@ -1,11 +1,9 @@
 //! How much a folder held when it was last written to: `count`, a small file beside the databases. SQLite cannot know that a
 //! file of its own is gone or was cut; this tells.
 
-use super::owned::owned;
+use crate::machine::{Machine, Owned};
 use std::fmt;
-use std::fs::File;
-use std::io::{self, Read};
-use std::os::unix::fs::FileExt;
+use std::io;
 use std::path::Path;
 
 pub(super) const NAME: &str = "count";
@@ -55,35 +53,27 @@ pub(super) enum Sealed {
 
 impl Sealed {
     /// Reads the file, and leaves it as it is.
-    pub(super) fn read(folder: &Path) -> io::Result<Self> {
-        match File::open(folder.join(NAME)) {
-            Ok(mut file) => Self::of(&mut file),
+    pub(super) fn read(machine: &dyn Machine, folder: &Path) -> io::Result<Self> {
+        // As much as is ever written, and one byte more.
+        let longest = line(&Held::default()).len() as u64 + 1;
+        match machine.read(&folder.join(NAME), longest) {
+            Ok(text) => Ok(parse(&text)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Self::Nothing),
             Err(error) => Err(error),
         }
-    }
-
-    fn of(file: &mut File) -> io::Result<Self> {
-        let mut text = Vec::new();
-        // As much as is ever written, and one byte more.
-        let longest = line(&Held::default()).len() as u64 + 1;
-        file.take(longest).read_to_end(&mut text)?;
-        Ok(parse(&text))
     }
 }
 
 /// The open file.
 pub(super) struct Seal {
-    file: File,
+    file: Box<dyn Owned>,
     written: Option<Held>,
 }
 
 impl Seal {
-    /// Opens the file, which is made if it is not there, and reads it.
-    pub(super) fn open(folder: &Path) -> io::Result<(Self, Sealed)> {
-        let mut file = owned(&folder.join(NAME))?;
-        let found = Sealed::of(&mut file)?;
-        Ok((Self { file, written: None }, found))
+    /// Opens the file, which is made if it is not there.
+    pub(super) fn open(machine: &dyn Machine, folder: &Path) -> io::Result<Self> {
+        Ok(Self { file: machine.open(&folder.join(NAME))?, written: None })
     }
 
     /// Writes what there is over what was there, if it changed. What is written was committed before, so a file that is older than
@@ -91,7 +81,7 @@ impl Seal {
     pub(super) fn write(&mut self, held: Held) -> io::Result<()> {
         if self.written != Some(held) {
             // All lines are of one length and in one sector of a disk: the line is the old one or the new one.
-            self.file.write_all_at(line(&held).as_bytes(), 0)?;
+            self.file.write(line(&held).as_bytes())?;
             self.written = Some(held);
         }
         Ok(())
@@ -99,7 +89,7 @@ impl Seal {
 
     /// Has it on disk too.
     pub(super) fn sync(&self) -> io::Result<()> {
-        self.file.sync_all()
+        self.file.sync()
     }
 }
 
@@ -131,6 +121,7 @@ fn checksum(bytes: &[u8]) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::machine::System;
 
     /// The values of the authors' test suite (draft-eastlake-fnv, appendix C).
     #[test]
@@ -158,12 +149,13 @@ mod tests {
     #[test]
     fn what_was_written_last_is_read() {
         let folder = tempfile::tempdir().unwrap();
-        let (mut seal, found) = Seal::open(folder.path()).unwrap();
-        assert_eq!(found, Sealed::Nothing);
+        let read = || Sealed::read(&System, folder.path()).unwrap();
+        assert_eq!(read(), Sealed::Nothing);
+        let mut seal = Seal::open(&System, folder.path()).unwrap();
+        assert_eq!(read(), Sealed::Nothing);
         for answers in [1, 100_000, 7] {
             seal.write(Held { answers, participants: 1, identities: 0 }).unwrap();
         }
-        let found = Seal::open(folder.path()).unwrap().1;
-        assert_eq!(found, Sealed::Held(Held { answers: 7, participants: 1, identities: 0 }));
+        assert_eq!(read(), Sealed::Held(Held { answers: 7, participants: 1, identities: 0 }));
     }
 }

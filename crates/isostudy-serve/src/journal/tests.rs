@@ -382,7 +382,7 @@ fn more_than_was_counted_is_no_loss() {
     let folder = killed(3);
     std::fs::remove_file(folder.path().join("count")).unwrap();
     assert_eq!(Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap().held().answers, 3);
-    let mut seal = seal::Seal::open(folder.path()).unwrap().0;
+    let mut seal = seal::Seal::open(&System, folder.path()).unwrap();
     seal.write(Held { answers: 2, participants: 2, identities: 0 }).unwrap();
     assert_eq!(Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap().held().answers, 3);
 }
@@ -450,7 +450,7 @@ fn answers_are_read_where_nothing_can_be_written() {
     use std::os::unix::fs::PermissionsExt;
     let folder = killed(5);
     std::fs::remove_file(folder.path().join("answers.sqlite-shm")).unwrap();
-    let copied = copy::Copied::of(folder.path(), &[files::ANSWERS]).unwrap();
+    let copied = copy::Copied::of(&System, folder.path(), &[files::ANSWERS]).unwrap();
     let path = copied.folder().to_owned();
     assert_eq!(kept(&path, "trial").unwrap().given.len(), 5, "the log is copied too");
     assert!(!path.join("identities.sqlite").exists());
@@ -626,4 +626,13 @@ fn a_folder_from_before_screens_were_kept_is_read_and_written_to() {
     drop(journal);
     let kept = kept(folder.path(), "trial").unwrap().given;
     assert_eq!(kept.iter().map(|given| given.answer.screen).collect::<Vec<_>>(), [None, Some(screen)]);
+}
+
+impl Journal {
+    /// Merges logs into their databases after so many pages, in place of 1000.
+    pub(crate) fn merge_log_after(&self, pages: u32) {
+        for database in [&self.answers, &self.identities] {
+            database.pragma_update(None, "wal_autocheckpoint", pages).unwrap();
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The one thread that has the journal.
 
 use super::{Journal, JournalError};
-use crate::log;
+use crate::machine::Machine;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -19,7 +19,7 @@ type Reply = Box<dyn FnOnce() + Send>;
 type Change = Box<dyn FnOnce(&mut Journal) -> rusqlite::Result<Reply> + Send>;
 type Read = Box<dyn FnOnce(&Journal) -> rusqlite::Result<Reply> + Send>;
 
-enum Work {
+pub(crate) enum Work {
     Change(Change),
     Read(Read),
 }
@@ -108,30 +108,44 @@ impl Keeper {
 
 /// Gives the journal to a thread, which ends, with everything on disk, when all handles are gone.
 pub fn start(journal: Journal) -> (Handle, Keeper) {
-    let (work, waiting) = channel();
+    let (handle, desk) = desk(journal);
     let (alive, ended) = oneshot::channel();
-    let missing = Arc::new(AtomicBool::new(false));
-    let trouble = Trouble { missing: Arc::clone(&missing), ..Trouble::default() };
     let thread = std::thread::spawn(move || {
         let _alive: oneshot::Sender<()> = alive;
-        keep(journal, &waiting, trouble)
+        desk.keep()
     });
-    (Handle { work, missing }, Keeper { thread, ended })
+    (handle, Keeper { thread, ended })
 }
 
-fn keep(mut journal: Journal, waiting: &Receiver<Work>, mut trouble: Trouble) -> Result<(), JournalError> {
-    loop {
-        let first = match waiting.recv_timeout(LOOK) {
-            Ok(first) => Some(first),
-            Err(RecvTimeoutError::Timeout) => None,
-            Err(RecvTimeoutError::Disconnected) => {
-                if let Some(path) = journal.place.missing() {
-                    return Err(JournalError::Gone { path: path.into() });
-                }
-                trouble.seal(journal.seal().and_then(|()| journal.seal.sync()));
-                return Ok(());
+/// Where work for a journal arrives, and is done.
+pub(crate) struct Desk {
+    journal: Journal,
+    waiting: Receiver<Work>,
+    trouble: Trouble,
+}
+
+pub(crate) fn desk(journal: Journal) -> (Handle, Desk) {
+    let (work, waiting) = channel();
+    let missing = Arc::new(AtomicBool::new(false));
+    let machine = Arc::clone(&journal.machine);
+    let trouble = Trouble { machine, missing: Arc::clone(&missing), unsaved: None, unread: None, seal: None };
+    (Handle { work, missing }, Desk { journal, waiting, trouble })
+}
+
+impl Desk {
+    fn keep(mut self) -> Result<(), JournalError> {
+        loop {
+            match self.waiting.recv_timeout(LOOK) {
+                Ok(first) => self.batch(Some(first))?,
+                Err(RecvTimeoutError::Timeout) => self.batch(None)?,
+                Err(RecvTimeoutError::Disconnected) => return self.close(),
             }
-        };
+        }
+    }
+
+    /// Does what has arrived.
+    pub(crate) fn batch(&mut self, first: Option<Work>) -> Result<(), JournalError> {
+        let Self { journal, waiting, trouble } = self;
         let more = std::iter::from_fn(|| waiting.try_recv().ok());
         let (mut changes, mut reads) = (Vec::new(), Vec::new());
         for work in first.into_iter().chain(more).take(BATCH) {
@@ -140,15 +154,15 @@ fn keep(mut journal: Journal, waiting: &Receiver<Work>, mut trouble: Trouble) ->
                 Work::Read(read) => reads.push(read),
             }
         }
-        if trouble.missing(&journal) {
+        if trouble.missing(journal) {
             // Whoever waits learns that nothing was saved since the replies are gone.
             changes.clear();
         }
         if !changes.is_empty() {
-            change(&mut journal, changes, &mut trouble)?;
+            change(journal, changes, trouble)?;
         }
         for read in reads {
-            match read(&journal) {
+            match read(journal) {
                 Ok(reply) => {
                     trouble.unread = None;
                     reply();
@@ -156,6 +170,17 @@ fn keep(mut journal: Journal, waiting: &Receiver<Work>, mut trouble: Trouble) ->
                 Err(error) => trouble.unread(&error),
             }
         }
+        Ok(())
+    }
+
+    /// Nothing more can arrive.
+    pub(crate) fn close(mut self) -> Result<(), JournalError> {
+        let Self { journal, trouble, .. } = &mut self;
+        if let Some(path) = journal.place.missing() {
+            return Err(JournalError::Gone { path: path.into() });
+        }
+        trouble.seal(journal.seal().and_then(|()| journal.seal.sync()));
+        Ok(())
     }
 }
 
@@ -193,8 +218,8 @@ fn commit(journal: &mut Journal, batch: Vec<Change>) -> rusqlite::Result<Vec<Rep
 }
 
 /// What is wrong, so that each trouble is told once, and its end too.
-#[derive(Default)]
 struct Trouble {
+    machine: Arc<dyn Machine>,
     missing: Arc<AtomicBool>,
     unsaved: Option<String>,
     unread: Option<String>,
@@ -207,12 +232,12 @@ impl Trouble {
         let missing = journal.place.missing();
         let was = self.missing.swap(missing.is_some(), Ordering::AcqRel);
         match missing {
-            Some(path) if !was => log::note(format!(
+            Some(path) if !was => self.machine.note(format!(
                 "{}: removed or replaced while the server runs; no answer is taken until it is back. Before you stop the server, \
                  download the answers from the researcher's page",
                 path.display()
             )),
-            None if was => log::note("the folder of answers is back; answers are taken again"),
+            None if was => self.machine.note("the folder of answers is back; answers are taken again".into()),
             _ => {}
         }
         missing.is_some()
@@ -221,7 +246,7 @@ impl Trouble {
     fn unsaved(&mut self, error: &rusqlite::Error) {
         let error = error.to_string();
         if self.unsaved.as_ref() != Some(&error) {
-            log::note(format!("answers cannot be saved: {error}"));
+            self.machine.note(format!("answers cannot be saved: {error}"));
             self.unsaved = Some(error);
         }
     }
@@ -229,21 +254,21 @@ impl Trouble {
     fn unread(&mut self, error: &rusqlite::Error) {
         let error = error.to_string();
         if self.unread.as_ref() != Some(&error) {
-            log::note(format!("answers cannot be read: {error}"));
+            self.machine.note(format!("answers cannot be read: {error}"));
             self.unread = Some(error);
         }
     }
 
     fn saved(&mut self) {
         if self.unsaved.take().is_some() {
-            log::note("answers are saved again");
+            self.machine.note("answers are saved again".into());
         }
     }
 
     fn seal(&mut self, written: std::io::Result<()>) {
         let error = written.err().map(|error| error.to_string());
         if let Some(error) = error.as_ref().filter(|_| self.seal != error) {
-            log::note(format!("the count of answers could not be written: {error}"));
+            self.machine.note(format!("the count of answers could not be written: {error}"));
         }
         self.seal = error;
     }

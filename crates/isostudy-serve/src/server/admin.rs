@@ -2,11 +2,10 @@
 //! download, which is the researcher's to open.
 
 use super::addresses::Peer;
-use super::api::{Failure, now_ms};
+use super::api::Failure;
 use super::{SHORTEST_TOKEN, Shared, Site};
 use crate::export::{self, HEADER};
 use crate::journal::Summary;
-use crate::log;
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
@@ -32,7 +31,7 @@ async fn authorised(site: &Shared, peer: Peer, headers: &HeaderMap) -> Result<()
     let wrong = site.wrong_tokens.fetch_add(1, Ordering::Relaxed) + 1;
     // At 1, 2, 4, 8 and so on: whoever tries without end fills no disk.
     if wrong.is_power_of_two() {
-        log::note(format!(
+        site.machine.note(format!(
             "somebody asked for the researcher's numbers with a wrong token ({wrong} since the start)"
         ));
     }
@@ -56,7 +55,7 @@ pub(super) async fn summary(
 ) -> Result<Json<Summary>, Failure> {
     authorised(&site, peer, &headers).await?;
     let of = Arc::clone(&site);
-    Ok(Json(site.journal.read(move |journal| journal.summary(now_ms(), &of.settings.key)).await?))
+    Ok(Json(site.journal.read(move |journal| journal.summary(of.machine.now_ms(), &of.settings.key)).await?))
 }
 
 /// `GET /api/admin/answers.csv`: the long format.

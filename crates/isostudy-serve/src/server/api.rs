@@ -10,7 +10,8 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
 use serde::{Deserialize, Serialize};
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// Why a request was not done; nothing has changed.
 pub(super) enum Failure {
@@ -76,10 +77,6 @@ impl From<JsonRejection> for Failure {
 
 type Asked<T> = Result<Json<T>, JsonRejection>;
 
-pub(super) fn now_ms() -> i64 {
-    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis() as i64)
-}
-
 /// `POST /api/sessions`: a form for somebody.
 pub(super) async fn begin(
     site: Site,
@@ -93,7 +90,8 @@ pub(super) async fn begin(
         let many = "too many people begin from this address at once";
         taken.map_err(|wait| Failure::TooMany(many, wait))?;
     }
-    Ok(Json(site.journal.change(move |journal| Ok(journal.begin(identifiers, now_ms()))).await??))
+    let machine = Arc::clone(&site.machine);
+    Ok(Json(site.journal.change(move |journal| Ok(journal.begin(identifiers, machine.now_ms()))).await??))
 }
 
 /// `POST /api/state`: where somebody stands.
@@ -126,7 +124,8 @@ pub(super) async fn answer(site: Site, asked: Asked<Answered>) -> Result<Json<Sa
     // An answer is worth more than what it was given on: no browser's odd word loses one.
     let screen = serde_json::from_value(screen).ok().filter(Screen::is_sound);
     let answer = Answer { order, stimulus, choice, rt_ms, screen };
-    site.journal.change(move |journal| journal.answer(&token, &answer, now_ms())).await??;
+    let machine = Arc::clone(&site.machine);
+    site.journal.change(move |journal| journal.answer(&token, &answer, machine.now_ms())).await??;
     Ok(Json(Saved { saved: true }))
 }
 
@@ -144,6 +143,7 @@ pub(super) struct Completion {
 /// `POST /api/finish`: the end, which is told only to those all of whose answers are on disk.
 pub(super) async fn finish(site: Site, asked: Asked<Token>) -> Result<Json<Completion>, Failure> {
     let Json(Token { token }) = asked?;
-    site.journal.change(move |journal| journal.finish(&token, now_ms())).await??;
+    let machine = Arc::clone(&site.machine);
+    site.journal.change(move |journal| journal.finish(&token, machine.now_ms())).await??;
     Ok(Json(Completion { completion: site.settings.completion.clone() }))
 }
