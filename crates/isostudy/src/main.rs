@@ -40,6 +40,7 @@ mod stored_times;
 mod study_key;
 mod trilinear_truth;
 mod video;
+mod work_time;
 
 use anyhow::Result;
 use cap::Cap;
