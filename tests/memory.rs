@@ -168,7 +168,7 @@ fn a_mesh_grows_no_larger_than_its_limit() {
 #[ignore = "takes minutes: every method many times"]
 fn no_method_holds_more_than_its_limit() {
     let folder = Folder::new();
-    noise(&folder.path("noise.nrrd"), 64);
+    noise(&folder.path("noise.nrrd"), 96);
     for preset in isostudy_extract::presets() {
         limits_hold(&folder, preset.id, "2");
         println!("{}: held", preset.id);
