@@ -240,6 +240,7 @@ pub use measure::{
     Accuracy, DistanceError, IsosurfacePoints, accuracy, accuracy_beside, distances, normal_errors_deg,
     triangle_distances,
 };
+pub use memory::watch_memory;
 pub use method::families::*;
 pub use method::{
     CornerSamples, Kind, Method, MethodError, Preset, Promises, VolumeCells, VolumeCellsError, kinds, presets,

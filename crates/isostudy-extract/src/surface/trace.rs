@@ -91,6 +91,15 @@ impl Trace {
         Ok(())
     }
 
+    /// Takes over what another one has.
+    pub(crate) fn append(&mut self, other: &mut Self) -> Result<(), TryReserveError> {
+        self.keys.try_reserve(other.keys.len())?;
+        self.cells.try_reserve(other.cells.len())?;
+        self.keys.append(&mut other.keys);
+        self.cells.append(&mut other.cells);
+        Ok(())
+    }
+
     pub(crate) fn clear(&mut self) {
         self.keys.clear();
         self.cells.clear();
