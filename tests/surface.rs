@@ -542,6 +542,25 @@ fn what_cannot_be_said_ends_nothing() {
     assert!(folder.path("a.ply").is_file());
 }
 
+#[test]
+fn an_open_surface_on_turned_cells_is_told_and_close_closes_it() {
+    let folder = Folder::of("extract");
+    let directions = |of: &str| format!("space dimension: 3\nspace origin: (0,0,0)\nspace directions: {of}");
+    text_volume(&folder, "turned.nrrd", [4; 3], &directions("(0.6,0.8,0) (-0.8,0.6,0) (0,0,1)"), |i| {
+        i as i32 % 4
+    });
+    text_volume(&folder, "straight.nrrd", [4; 3], &directions("(1,0,0) (0,1,0) (0,0,1)"), |i| i as i32 % 4);
+    let extract = |file: &str, more: &[&str]| {
+        let words = ["--volume", file, "--isovalue", "1.5", "--method", "mc", "-o", "a.ply"];
+        folder.succeed(&[&words[..], more].concat()).stderr
+    };
+    let told = extract("turned.nrrd", &[]);
+    assert!(told.contains("turned.nrrd: the grid is turned against the axes, and this method"), "{told}");
+    assert!(told.contains("12 boundary edges, one from ") && told.contains("--close closes it"), "{told}");
+    assert!(!extract("turned.nrrd", &["--close"]).contains("open"));
+    assert!(!extract("straight.nrrd", &[]).contains("open"), "its end is the box's");
+}
+
 /// On standard error, so that standard output stays the file's name; the report of --json has it.
 #[test]
 fn a_surface_says_how_large_it_is_and_how_long_it_took() {

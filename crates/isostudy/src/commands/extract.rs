@@ -198,6 +198,13 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if let Some(path) = &arguments.picture {
         write_whole(path, &picture(&extraction.mesh, arguments.crease_deg)?)?;
     }
+    if let (Cells::Own { is_turned: true, .. }, Some(found)) = (&cells, open_edges(&extraction.mesh)) {
+        let name = &source.name;
+        tell!(
+            "{name}: the grid is turned against the axes, and this method extracts on the volume's own cells. So the surface is open \
+             where it leaves them ({found}). --close closes it"
+        );
+    }
     // The report has it.
     if !arguments.json {
         tell_made(out, extraction.counts.triangles, extraction.counts.vertices, extraction.times.total());
