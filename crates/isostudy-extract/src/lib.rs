@@ -235,7 +235,7 @@ pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCou
 pub use extractor::Extractor;
 pub use isostudy_field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
 pub use lattice::{Arrangement, BoxGrid, CellBox, Grid, GridError, LatticeError};
-pub use levels::{LevelError, LevelExtractor, LevelSettings, Neighbours};
+pub use levels::{LevelError, LevelExtractor, Neighbours};
 pub use measure::{
     Accuracy, DistanceError, IsosurfacePoints, accuracy, accuracy_beside, distances, normal_errors_deg,
     triangle_distances,
