@@ -47,13 +47,15 @@ use crate::source::Source;
 /// # Guaranteed
 ///
 /// - A chunk of the level without neighbours of other levels is that of a [`ChunkExtractor`] on the level's grid.
-/// - Chunks that were all told the truth about their neighbours have no open edge between them, whatever the field.
+/// - Chunks that were all told the truth about their neighbours have no open edge between them, whatever the field. Of marching cubes
+///   they are a manifold.
 /// - A vertex on a seam is the neighbour's own to the bit, and so is its normal.
 ///
 /// # Not guaranteed
 ///
-/// - A field finer than a level's cells may differ there from what the next level has; the seam then has a piece of surface that lies in
-///   the side between the chunks.
+/// - A field finer than a level's cells may differ there from what the next level has; what only the finer one sees ends in the coarse
+///   cells at the seam. Its triangles may face any way.
+/// - With [`Faces::Trilinear`], coarse cells at a finer neighbour have no tunnels.
 #[derive(Debug)]
 pub struct LevelExtractor {
     grid: Grid,
