@@ -127,9 +127,17 @@ impl Filling {
         }
     }
 
-    /// Finds triangles of a band between the loop and another one. `false` if there are none.
-    pub(super) fn find_band(&mut self, kind: &Divided, other: &[Corner]) -> bool {
+    /// Finds triangles of a band between the loop and another one, if need be with a vertex at one of some places. `false` if there are none.
+    pub(super) fn find_band(&mut self, kind: &Divided, other: &[Corner], places: &[DVec3]) -> bool {
         self.begin();
+        self.try_bands(kind, other, None);
+        if self.least_cosine < LEAST_COSINE {
+            places.iter().for_each(|&place| self.try_bands(kind, other, Some(place)));
+        }
+        self.has_found()
+    }
+
+    fn try_bands(&mut self, kind: &Divided, other: &[Corner], inner: Option<DVec3>) {
         for (j, end) in other.iter().enumerate() {
             let squared = |corner: &Corner| corner.position.distance_squared(end.position);
             let may = self.corners.iter().enumerate().filter(|(_, corner)| corner.may_join(end, kind));
@@ -139,9 +147,18 @@ impl Filling {
             self.bridged.extend_from_slice(&self.corners[..=i]);
             self.bridged.extend_from_slice(&other[j..]);
             self.bridged.extend_from_slice(&other[..=j]);
-            self.try_bridged(kind, &[]);
+            let Some(place) = inner else {
+                self.try_bridged(kind, &[]);
+                continue;
+            };
+            for k in 0..self.corners.len() + other.len() + 2 {
+                // A bridge from each corner to the vertex and back.
+                let corner = self.bridged[k];
+                self.bridged.splice(k + 1..k + 1, [Corner::new(0, place), corner]);
+                self.try_bridged(kind, &[place]);
+                self.bridged.drain(k + 1..k + 3);
+            }
         }
-        self.has_found()
     }
 
     /// Takes all triangles from the loop's sides to a vertex within it.

@@ -330,51 +330,50 @@ impl Here<'_> {
     ) -> Result<(), TryReserveError> {
         // A vertex is missing only where a field breaks its promises.
         let is_whole = |steps: &&[Step]| steps.iter().all(|s| self.vertices[usize::from(s.edge)] != NONE);
+        let mut number = INNER;
         if let Some([flat, other]) = self.band(loops) {
             let mut ring = Vec::new();
             self.read(flat, added, &mut ring, chunk)?;
             self.read(other, added, &mut filling.corners, chunk)?;
-            if filling.find_band(self.kind, &ring) {
-                return self.take(filling.triangles([NONE; 2]), chunk);
+            let mut places = Vec::new();
+            for (i, j) in (0..flat.len()).flat_map(|i| (0..other.len()).map(move |j| (i, j))) {
+                if flat[i].face == other[j].face {
+                    let ends = [flat[i], flat[(i + 1) % flat.len()], other[j], other[(j + 1) % other.len()]];
+                    places.extend(self.in_saddle(ends, chunk));
+                }
+            }
+            if filling.find_band(self.kind, &ring, &places) {
+                return self.take(filling, &mut number, chunk);
             }
         }
-        let mut number = INNER;
         for steps in loops.iter().filter(is_whole) {
             self.read(steps, added, &mut filling.corners, chunk)?;
             if let Some(face) = self.is_flat(steps) {
                 filling.take_fan(self.on_the_way(self.kind.middle_of_side(face), MIDDLE));
             } else if !filling.find(self.kind) {
-                self.find_round(steps, filling);
+                self.find_round(steps, filling, chunk);
             }
-            let mut inner = [NONE; 2];
-            for (vertex, &position) in inner.iter_mut().zip(filling.inner()) {
-                let key = VertexKey::new(Arrangement::SimpleCubic, self.cell.map(i64::from), number);
-                let normal = filling.facing().map_or(Vec3::Z, |facing| facing.as_vec3());
-                *vertex = self.add(chunk, key.at_level(chunk.level), position, normal)?;
-                number += 1;
-            }
-            self.take(filling.triangles(inner), chunk)?;
+            self.take(filling, &mut number, chunk)?;
         }
         Ok(())
     }
 
+    /// Places on the surface between two arcs in one face, by their ends: where it is like a saddle, in the middle and at both narrow ends.
+    fn in_saddle(&self, ends: [Step; 4], chunk: &Chunk) -> [DVec3; 3] {
+        let position = |v: u32| Vec3::from(chunk.positions[v as usize]).as_dvec3();
+        let [a, b, c, d] = ends.map(|step| position(self.vertices[usize::from(step.edge)]));
+        [(a + b + c + d) / 4.0, (b + c) / 2.0, (d + a) / 2.0].map(|place| self.on_the_surface(place))
+    }
+
     /// Finds triangles of a loop with vertices within it, or finds that those without are better.
-    fn find_round(&self, steps: &[Step], filling: &mut Filling) {
-        let next = |i: usize| &steps[(i + 1) % steps.len()];
-        let mut saddles = Vec::new();
-        for (i, one) in steps.iter().enumerate() {
-            for (j, two) in steps.iter().enumerate().skip(i + 1).filter(|(_, two)| two.face == one.face) {
-                saddles.push([one, next(i), two, next(j)].map(|step| self.vertices[usize::from(step.edge)]));
-            }
-        }
-        // Where two arcs of the loop are in one face, the surface is between them, and narrow at one end or at both.
-        for saddle in saddles {
-            let position = |v: u32| filling.corners.iter().find(|c| c.vertex == v).map(|c| c.position);
-            let [a, b, c, d] = saddle.map(|v| position(v).unwrap_or(DVec3::ZERO));
-            let [middle, one, other] =
-                [(a + b + c + d) / 4.0, (b + c) / 2.0, (d + a) / 2.0].map(|place| self.on_the_surface(place));
-            for inner in [&[middle][..], &[one], &[other], &[one, other]] {
-                filling.find_round(self.kind, inner);
+    fn find_round(&self, steps: &[Step], filling: &mut Filling, chunk: &Chunk) {
+        let next = |i: usize| steps[(i + 1) % steps.len()];
+        for (i, &one) in steps.iter().enumerate() {
+            for (j, &two) in steps.iter().enumerate().skip(i + 1).filter(|(_, two)| two.face == one.face) {
+                let [middle, end, other_end] = self.in_saddle([one, next(i), two, next(j)], chunk);
+                for inner in [&[middle][..], &[end], &[other_end], &[end, other_end]] {
+                    filling.find_round(self.kind, inner);
+                }
             }
         }
         let mean = self.on_the_surface(filling.mean());
@@ -436,12 +435,16 @@ impl Here<'_> {
         add(chunk, key, position.to_array(), normal.map(|n| n.to_array()))
     }
 
-    fn take(
-        &self,
-        triangles: impl Iterator<Item = [u32; 3]>,
-        chunk: &mut Chunk,
-    ) -> Result<(), TryReserveError> {
-        for triangle in triangles {
+    /// Adds the triangles that were found, and the vertices within the loop, whose numbers in the cell are the next ones.
+    fn take(&self, filling: &Filling, number: &mut usize, chunk: &mut Chunk) -> Result<(), TryReserveError> {
+        let mut inner = [NONE; 2];
+        for (vertex, &position) in inner.iter_mut().zip(filling.inner()) {
+            let key = VertexKey::new(Arrangement::SimpleCubic, self.cell.map(i64::from), *number);
+            let normal = filling.facing().map_or(Vec3::Z, |facing| facing.as_vec3());
+            *vertex = self.add(chunk, key.at_level(chunk.level), position, normal)?;
+            *number += 1;
+        }
+        for triangle in filling.triangles(inner) {
             push(&mut chunk.triangles, triangle)?;
             push(&mut chunk.triangle_cells, chunk.cells.number(self.cell))?;
             chunk.seam += 1;
