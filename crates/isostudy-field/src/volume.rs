@@ -213,13 +213,18 @@ impl VolumeField {
     }
 
     fn interpolated(&self, index: DVec3) -> f32 {
-        let (mut first, mut part) = ([0; 3], [0.0f32; 3]);
-        for k in 0..3 {
-            first[k] = (index[k] as usize).min(self.grid.counts[k] - 2);
-            part[k] = (index[k] - first[k] as f64) as f32;
+        let (mut at, mut next, mut part) = (0, [0; 3], [0.0f32; 3]);
+        for (k, stride) in self.grid.strides().into_iter().enumerate() {
+            let mut first = index[k] as usize;
+            part[k] = (index[k] - first as f64) as f32;
+            // At a sample the sample: `a + (b - a)` is not `b` where one of them is far larger.
+            if part[k] == 1.0 {
+                (first, part[k]) = (first + 1, 0.0);
+            }
+            at += first * stride;
+            next[k] = if first + 1 < self.grid.counts[k] { stride } else { 0 };
         }
-        let [along, up, back] = self.grid.strides();
-        let at = first[0] + first[1] * up + first[2] * back;
+        let [along, up, back] = next;
         let between = |a: f32, b: f32, part: f32| a + (b - a) * part;
         let along_x = |at: usize| between(self.values[at], self.values[at + along], part[0]);
         let along_y = |at: usize| between(along_x(at), along_x(at + up), part[1]);

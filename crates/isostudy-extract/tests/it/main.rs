@@ -17,6 +17,7 @@ mod cubes_vtk;
 mod dual_contouring;
 mod edge_clamp;
 mod fields;
+mod fuzz;
 mod labels;
 mod lattice;
 mod levels;
