@@ -7,7 +7,7 @@
 //!
 //! `cargo run --release -p isostudy-raster --example lod -- [frames] [metres per second] [cubes|nets|dc|dc-in-cell] [file.gif]`
 //!
-//! `--width W` sets the width of transitions, in cells. `--close-up FILE.png` walks no way and digs nothing. It draws one place of the
+//! `--close-up FILE.png` walks no way and digs nothing. It draws one place of the
 //! seam between levels 0 and 1, as it is after so many frames, by marching cubes and by surface nets.
 
 #[path = "browser/src/ground.rs"]
@@ -22,7 +22,7 @@ use std::time::Instant;
 use glam::Vec3;
 use ground::{Ground, Hole};
 use isostudy_extract::{
-    Chunk, Control, Cubes, DualContouring, Grid, LevelExtractor, LevelSettings, Method, Neighbours,
+    Chunk, ChunkSettings, Control, Cubes, DualContouring, Grid, LevelExtractor, Method, Neighbours,
     ScalarField, SurfaceNets, weld_chunks,
 };
 use isostudy_mesh::TriangleMesh;
@@ -40,8 +40,6 @@ const CHUNK: u32 = 16;
 const SIGHT: [i32; 3] = [3, 3, 1];
 /// A chunk is divided that is nearer than so many of its sides. With 1 or more, levels of neighbours differ by one at most.
 const NEAR: f32 = 1.5;
-/// Of transitions, in cells.
-const WIDTH: f32 = 0.25;
 /// Surface nets with one vertex per cell, which alone have levels.
 const NETS: Method = Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 });
 
@@ -55,7 +53,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         Ok(Some(arguments.remove(i)))
     };
-    let width = option("--width")?.map_or(Ok(WIDTH), |text| text.parse())?;
     let close_up = option("--close-up")?;
     if let Some(other) = arguments.iter().find(|argument| argument.starts_with("--")) {
         return Err(format!("{other}: there is no such option").into());
@@ -72,11 +69,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let grid = Grid::try_new([0.0; 3], 1.0)?;
     if let Some(path) = close_up {
         let way = frames.saturating_sub(1) as f32 * speed as f32 / 60.0;
-        std::fs::write(&path, draw_close_up(&grid, width, way)?)?;
+        std::fs::write(&path, draw_close_up(&grid, way)?)?;
         println!("{path}");
         return Ok(());
     }
-    let walk = |between| World::new(&grid, &method, width, between)?.walk(frames, speed as f32);
+    let walk = |between| World::new(&grid, &method, between)?.walk(frames, speed as f32);
     let world = walk(Between::Seams)?;
     // What duals have at a side reaches into the neighbour: it is no skirt.
     if matches!(method, Method::Cubes(_)) {
@@ -125,12 +122,12 @@ struct World {
 }
 
 impl World {
-    fn new(grid: &Grid, method: &Method, width: f32, between: Between) -> Result<Self, Box<dyn Error>> {
+    fn new(grid: &Grid, method: &Method, between: Between) -> Result<Self, Box<dyn Error>> {
         let grids: Result<_, _> = (0..LEVELS).map(|level| grid.coarser(level)).collect();
         Ok(Self {
             grids: grids?,
             between,
-            extractor: LevelExtractor::try_new(grid, method, &LevelSettings::default().with_width(width))?,
+            extractor: LevelExtractor::try_new(grid, method, &ChunkSettings::default())?,
             ground: Ground::default(),
             camera: Vec3::ZERO,
             wanted: Vec::new(),
@@ -478,15 +475,15 @@ fn is_sliver([a, b, c]: [Vec3; 3]) -> bool {
 
 /// A PNG of the place where the finest level has its north-eastern corner, by marching cubes and by surface nets, when the camera has gone
 /// so many metres.
-fn draw_close_up(grid: &Grid, width: f32, way: f32) -> Result<Vec<u8>, Box<dyn Error>> {
+fn draw_close_up(grid: &Grid, way: f32) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut pictures = Vec::new();
     for method in [Method::Cubes(Cubes::default()), NETS] {
-        let mut world = World::new(grid, &method, width, Between::Seams)?;
+        let mut world = World::new(grid, &method, Between::Seams)?;
         world.go_to(way);
         world.frame()?;
         pictures.push(world.picture_of_corner()?);
     }
-    let labels = ["marching cubes: transition cells", "surface nets: polygons round minimal edges"];
+    let labels = ["marching cubes: stitched coarse cells", "surface nets: polygons round minimal edges"];
     let row: Vec<Panel> =
         pictures.iter().zip(labels).map(|(picture, label)| Panel { picture, label }).collect();
     Ok(pixmap_to_png(&panels(&row, &Sheet { columns: 2, ..Sheet::default() })?))

@@ -1,7 +1,9 @@
 //! What comes from strangers: programs that have to be allowed, that are ended with the command, and that show nothing but what they are.
 
 use crate::command::{Folder, Run};
+use crate::fixture::files;
 use rustix::process::{Pid, Signal, kill_process};
+use std::collections::BTreeSet;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -73,6 +75,70 @@ fn names_cannot_forge_a_line_or_a_page() {
     let valid = folder.succeed(&["validate", "my/study.toml"]);
     assert!(valid.stdout.contains("a\\u000d\\u001b[2Kb\\u202ec\\u000ad"), "{}", valid.stdout);
     assert_shows_nothing_forged(&valid.stdout);
+    // And in whatever the study writes for people.
+    folder.succeed(&["study", "my/study.toml", "--out", "out"]);
+    let mut kinds = BTreeSet::new();
+    for (path, bytes) in files(&folder.path("out")) {
+        let kind = path.rsplit('.').next().unwrap().to_owned();
+        let kind = TEXTS.into_iter().find(|of| **of == kind);
+        // The page of the viewer has a library in it.
+        let Some(kind) = kind.filter(|_| !path.ends_with("viewer.html")) else { continue };
+        let text = String::from_utf8(bytes).unwrap_or_else(|_| panic!("{path} is no text"));
+        let forging = |c: char| (c.is_control() && !"\n\t".contains(c)) || "\u{202e}\u{2066}".contains(c);
+        let line = text.lines().find(|line| line.contains(forging));
+        assert!(line.is_none(), "{path}: {line:?}");
+        if text.contains("[2Kb") {
+            kinds.insert(kind);
+        }
+    }
+    assert_eq!(kinds, TEXTS.into(), "files of these kinds have the name");
+}
+
+/// Kinds of files that people read.
+const TEXTS: [&str; 4] = ["csv", "html", "md", "tex"];
+
+/// Runs a command in a terminal of its own, types an answer when it asks, and prints what it said.
+const IN_A_TERMINAL: &str = r#"
+import os, pty, sys
+said, answered = b"", False
+def read(terminal):
+    global said, answered
+    data = os.read(terminal, 1024)
+    said += data
+    if b"Type yes" in said and not answered:
+        answered = True
+        os.write(terminal, sys.argv[1].encode() + b"\n")
+    return data
+sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[2:], read)))
+"#;
+
+#[test]
+fn a_terminal_asks_and_only_yes_allows() {
+    let folder = study(FORGED);
+    let id = first(&folder);
+    let asked = |answer: &str| {
+        let command = folder.isostudy();
+        let mut python = Command::new("python3");
+        python.args(["-c", IN_A_TERMINAL, answer]).arg(command.get_program());
+        python.args(&EXTRACT[..5]).arg(&id).current_dir(folder.root()).stdin(Stdio::null());
+        for (name, value) in command.get_envs() {
+            python.env(name, value.unwrap_or_default());
+        }
+        Run::of(&mut python)
+    };
+    let shown = r#""sh" "-c" "touch ran #\r\u{1b}[2K  program: python3 ./example.py""#;
+    for answer in ["", "no", "y", "yes please"] {
+        let ran = asked(answer);
+        assert_eq!(ran.code, Some(2), "{answer}: {}", ran.stdout);
+        assert!(ran.stdout.contains(shown) && ran.stdout.contains("Run them?"), "{answer}: {}", ran.stdout);
+        assert!(ran.stdout.contains("its programs are not allowed to run"), "{answer}: {}", ran.stdout);
+        assert!(!folder.path(".state").exists(), "{answer} allows nothing");
+    }
+    // The program is a bad one: it is run, fails, and is not asked about again.
+    let ran = asked("yes");
+    assert_eq!(ran.code, Some(1), "{}", ran.stdout);
+    let again = asked("no");
+    assert!(again.code == Some(1) && !again.stdout.contains("Run them?"), "{}", again.stdout);
 }
 
 /// A program in Python that answers well.

@@ -16,6 +16,7 @@ mod gate;
 mod http;
 mod isovalues;
 mod labels;
+mod memory;
 mod messages;
 mod named;
 mod page;

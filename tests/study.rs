@@ -359,20 +359,55 @@ fn wrong_input_is_refused_before_anything_is_made() {
 /// The same lattice streamed takes a few layers only, and those are held against the limit.
 #[test]
 fn memory_is_checked_for_the_extractor_that_runs() {
-    let validated = |limit: &str| {
+    let validated = |positions: &str, limit: &str| {
         let fixture = Fixture::new();
-        fixture.edit("benchmark_spacing = 0.125", "benchmark_spacing = 0.002");
-        fixture.edit("positions = \"accumulated\"", "positions = \"indexed\"");
+        fixture.edit("benchmark_spacing = 0.125", "benchmark_spacing = 0.01");
+        fixture.edit("positions = \"accumulated\"", positions);
         fixture.edit("memory_gib = 8.0", limit);
         let run = Run::of(isostudy().arg("validate").arg(fixture.config()));
         (run.code, run.stderr)
     };
-    assert_eq!(validated("memory_gib = 1.0"), (Some(0), String::new()));
-    let (code, said) = validated("memory_gib = 0.001");
-    assert_eq!(code, Some(2), "{said}");
-    for part in ["benchmark_spacing = 0.002", "limits.memory_gib", "1.0 MiB"] {
-        assert!(said.contains(part), "{part:?} is not in: {said}");
+    let streamed = "positions = \"indexed\"";
+    assert_eq!(validated(streamed, "memory_gib = 0.5"), (Some(0), String::new()));
+    for (positions, limit, allowed) in [
+        ("positions = \"accumulated\"", "memory_gib = 0.5", "512.0 MiB"),
+        (streamed, "memory_gib = 0.001", "1.0 MiB"),
+    ] {
+        let (code, said) = validated(positions, limit);
+        assert_eq!(code, Some(2), "{said}");
+        for part in ["benchmark_spacing = 0.01", "limits.memory_gib", allowed] {
+            assert!(said.contains(part), "{part:?} is not in: {said}");
+        }
     }
+}
+
+/// A billion cubes of a sphere are made in seconds, and in days 100,000 times.
+#[test]
+fn a_study_of_more_than_an_hour_is_refused() {
+    let refused = |rounds: &str| {
+        let fixture = Fixture::new();
+        fixture.edit("benchmark_spacing = 0.125", "benchmark_spacing = 0.002");
+        fixture.edit("positions = \"accumulated\"", "positions = \"indexed\"");
+        fixture.edit_with(|text| {
+            let lines =
+                text.lines().map(|line| if line.starts_with("short_iterations") { rounds } else { line });
+            lines.collect::<Vec<_>>().join("\n")
+        });
+        (Run::of(isostudy().arg("validate").arg(fixture.config())), fixture.run("study", &[]), fixture)
+    };
+    let (validated, made, fixture) = refused("short_iterations = 100000");
+    for run in [validated, made] {
+        assert_eq!(run.code, Some(2), "{}", run.stderr);
+        for part in [
+            "takes ",
+            " hours or more by trials",
+            "a study may take one hour",
+            "objects[0].benchmark_spacing = 0.002",
+        ] {
+            assert!(run.stderr.contains(part), "{part:?} is not in: {}", run.stderr);
+        }
+    }
+    assert!(!fixture.out().exists(), "something was written");
 }
 
 #[test]

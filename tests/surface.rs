@@ -452,12 +452,12 @@ fn memory_has_a_limit_that_is_named() {
     for (arguments, want) in [
         (
             of("large.nrrd", &["--memory", "1GiB"]),
-            "large.nrrd: sizes [1000, 1000, 1000] need 3.8 GiB of memory, four bytes a sample, and the limit is 1.0 GiB: \
-             --memory allows no more",
+            "large.nrrd: 4.0 GiB of memory are needed: 3.8 GiB for 1000 x 1000 x 1000 samples, four bytes each, 136.4 MiB for the \
+             ranges of their bricks, ",
         ),
-        (of("default.nrrd", &[]), "default.nrrd: sizes [1100, 1100, 1100] need 5.0 GiB of memory"),
-        (of("ball.nrrd", &["--memory", "100kB"]), "ball.nrrd: sizes [30, 30, 30] need 105.5 KiB of memory"),
-        (of("ball.nrrd", &["--memory", "150kB"]), "beside the volume's 0.1 MiB, --memory allows 0.1 MiB"),
+        (of("default.nrrd", &[]), "5.0 GiB for 1100 x 1100 x 1100 samples, four bytes each, "),
+        (of("ball.nrrd", &["--memory", "100kB"]), "105.5 KiB for 30 x 30 x 30 samples, four bytes each, "),
+        (of("ball.nrrd", &["--memory", "150kB"]), "for the grid; --memory allows 146.4 KiB"),
         (
             ball(&["-o", "a.ply", "--cells", "800", "--memory", "50MB", "--arrangement", "face-centred"])
                 .into_iter()
@@ -540,6 +540,25 @@ fn what_cannot_be_said_ends_nothing() {
     let ended = folder.isostudy().args(words).stderr(full).status().unwrap();
     assert!(ended.success(), "{ended}");
     assert!(folder.path("a.ply").is_file());
+}
+
+#[test]
+fn an_open_surface_on_turned_cells_is_told_and_close_closes_it() {
+    let folder = Folder::of("extract");
+    let directions = |of: &str| format!("space dimension: 3\nspace origin: (0,0,0)\nspace directions: {of}");
+    text_volume(&folder, "turned.nrrd", [4; 3], &directions("(0.6,0.8,0) (-0.8,0.6,0) (0,0,1)"), |i| {
+        i as i32 % 4
+    });
+    text_volume(&folder, "straight.nrrd", [4; 3], &directions("(1,0,0) (0,1,0) (0,0,1)"), |i| i as i32 % 4);
+    let extract = |file: &str, more: &[&str]| {
+        let words = ["--volume", file, "--isovalue", "1.5", "--method", "mc", "-o", "a.ply"];
+        folder.succeed(&[&words[..], more].concat()).stderr
+    };
+    let told = extract("turned.nrrd", &[]);
+    assert!(told.contains("turned.nrrd: the grid is turned against the axes, and this method"), "{told}");
+    assert!(told.contains("12 boundary edges, one from ") && told.contains("--close closes it"), "{told}");
+    assert!(!extract("turned.nrrd", &["--close"]).contains("open"));
+    assert!(!extract("straight.nrrd", &[]).contains("open"), "its end is the box's");
 }
 
 /// On standard error, so that standard output stays the file's name; the report of --json has it.

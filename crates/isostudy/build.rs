@@ -34,7 +34,7 @@ const CRATES: [&str; 21] = [
 /// The pages that people read: a digest of their own.
 const PAGES: &str = "pipeline/pages";
 /// Modules of the command that change no result: what is asked, what is said meanwhile, and how it ended.
-const ASIDE: [&str; 7] = ["main", "commands", "consent", "help", "outcome", "paths", "terminal"];
+const ASIDE: [&str; 8] = ["main", "commands", "consent", "help", "outcome", "paths", "terminal", "work_time"];
 
 fn main() {
     let root = Path::new(&std::env::var("CARGO_MANIFEST_DIR").expect("cargo says where the package is"))

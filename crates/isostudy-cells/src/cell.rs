@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use crate::hull::{Hull, Place, hull};
+use crate::hull::{Hull, Place, dot, hull, minus, normal};
 
-/// A convex cell with corners at whole coordinates. That of a [`transition`](Self::transition) has corners within faces and edges.
+/// A convex cell with corners at whole coordinates. A [divided](Self::divided) cube has corners within faces and edges.
 ///
 /// Corners keep their numbers. Edges are numbered by their lower corner, then by their higher one; faces by their corners.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,6 +15,8 @@ pub struct Cell {
     face_edges: Vec<Vec<u8>>,
     faces_at_edge: Vec<u32>,
     faces_at_corner: Vec<u32>,
+    /// The corners of each face, one bit each.
+    corners_of_face: Vec<u32>,
 }
 
 /// Why corners make no cell.
@@ -86,6 +88,7 @@ impl Cell {
         Self {
             faces_at_edge: (0..edges.len()).map(|e| faces_with(&face_edges, e)).collect(),
             faces_at_corner: (0..corners.len()).map(|c| faces_with(&faces, c)).collect(),
+            corners_of_face: faces.iter().map(|face| face.iter().fold(0, |set, c| set | 1 << c)).collect(),
             corners,
             edges,
             faces,
@@ -121,20 +124,55 @@ impl Cell {
         Self::try_new(&corners).expect("an octahedron is a cell")
     }
 
-    /// The cell between a square of a coarse grid and the four of the fine grid in its place, for seams of two resolutions
-    /// (Lengyel 2010). Corner `i + 3 j` is `(i, j, 0)` of the fine squares, corner `9 + i + 2 j` is `(2 i, 2 j, 1)` of the coarse one.
+    /// The cube with corners at 0 and 2, some of whose edges are divided into two and some of whose sides into four squares, for seams
+    /// to cubes half as large.
     ///
-    /// Faces 0 to 3 are the fine squares, x fastest; face 4 is the coarse one; 5 to 8 are the sides at y = 0, y = 2, x = 0 and
-    /// x = 2, with five corners each. A corner of the coarse square is on the side of the fine one that it stands for: no edge
-    /// between the squares is ever crossed, and no side is ever ambiguous.
-    pub fn transition() -> Self {
-        let fine = (0..9).map(|c| [c % 3, c / 3, 0]);
-        let coarse = (0..4).map(|c| [c % 2 * 2, c / 2 * 2, 1]);
-        let squares = [0, 1, 3, 4].map(|c| vec![c, c + 3, c + 4, c + 1]);
-        let others: [&[u8]; 5] =
-            [&[9, 10, 12, 11], &[0, 1, 2, 10, 9], &[6, 11, 12, 8, 7], &[0, 9, 11, 6, 3], &[2, 5, 8, 12, 10]];
-        let faces = squares.into_iter().chain(others.map(<[u8]>::to_vec));
-        Self::with_faces(fine.chain(coarse).collect(), faces.collect())
+    /// Corner `x + 3 y + 9 z` is `(x, y, z)`; points that no face has are there too. `sides` has a bit for each side, `2 axis` for the
+    /// lower one and `2 axis + 1` for the upper. `edges` has one for each edge, `4 axis`, and 1 and 2 more where it is at the upper
+    /// end of the next axis and of the one after that, in cyclic order. Edges of divided sides are divided anyway.
+    ///
+    /// Faces go by sides. A divided side has four, its squares; another one has a face with up to eight corners.
+    pub fn divided(sides: u8, edges: u16) -> Self {
+        let axes = |axis: usize| [axis, (axis + 1) % 3, (axis + 2) % 3];
+        let point = |place: Place| (place[0] + 3 * place[1] + 9 * place[2]) as u8;
+        // A middle between two corners is there if its edge is divided.
+        let is_edge_divided = |middle: Place| {
+            let axis = (0..3).find(|&axis| middle[axis] == 1).expect("the middle of an edge");
+            let [_, u, v] = axes(axis);
+            let is_side_divided = |axis: usize| sides >> (2 * axis) >> (middle[axis] / 2) & 1 != 0;
+            let number = 4 * axis + (middle[u] / 2) as usize + middle[v] as usize;
+            edges >> number & 1 != 0 || is_side_divided(u) || is_side_divided(v)
+        };
+        let mut faces = Vec::new();
+        for side in 0..6 {
+            let ([axis, u, v], is_high) = (axes(side / 2), side % 2 != 0);
+            // Round a square, counter-clockwise seen from above.
+            let mut add = |low: [i32; 2], steps: &[[i32; 2]]| {
+                let mut face: Vec<u8> = Vec::new();
+                for step in steps {
+                    let mut place = [0; 3];
+                    (place[axis], place[u], place[v]) =
+                        (if is_high { 2 } else { 0 }, low[0] + step[0], low[1] + step[1]);
+                    let is_middle = place.iter().filter(|&&c| c == 1).count() == 1;
+                    if sides >> side & 1 != 0 || !is_middle || is_edge_divided(place) {
+                        face.push(point(place));
+                    }
+                }
+                if !is_high {
+                    face.reverse();
+                }
+                faces.push(face);
+            };
+            if sides >> side & 1 != 0 {
+                for low in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+                    add(low, &[[0, 0], [1, 0], [1, 1], [0, 1]]);
+                }
+            } else {
+                let round = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
+                add([0, 0], &round);
+            }
+        }
+        Self::with_faces((0..27).map(|c| [c % 3, c / 3 % 3, c / 9]).collect(), faces)
     }
 
     /// The corners, as given.
@@ -167,9 +205,24 @@ impl Cell {
         &self.faces_at_corner
     }
 
+    /// The corners of each face, one bit each.
+    pub(crate) fn corners_of_face(&self) -> &[u32] {
+        &self.corners_of_face
+    }
+
+    /// Whether the faces at an edge lie in one plane.
+    pub(crate) fn is_within_side(&self, edge: usize) -> bool {
+        let faces = self.faces.iter().enumerate().filter(|(f, _)| self.faces_at_edge[edge] >> f & 1 != 0);
+        let mut places = faces.flat_map(|(_, face)| face.iter().map(|&c| self.corners[usize::from(c)]));
+        let ends = self.edges[edge].map(|c| self.corners[usize::from(c)]);
+        let normals = places.clone().map(|place| normal([ends[0], ends[1], place]));
+        let across = normals.into_iter().find(|&normal| normal != [0; 3]).unwrap_or_default();
+        places.all(|place| dot(across, minus(place, ends[0])) == 0)
+    }
+
     /// The edges whose ends are on different sides, one bit each. `inside` has one bit a corner.
-    pub fn crossed(&self, inside: u32) -> u32 {
-        let differs = |[a, b]: [u8; 2]| (inside >> a ^ inside >> b) & 1;
+    pub fn crossed(&self, inside: u32) -> u64 {
+        let differs = |[a, b]: [u8; 2]| u64::from((inside >> a ^ inside >> b) & 1);
         self.edges.iter().enumerate().fold(0, |set, (e, &ends)| set | differs(ends) << e)
     }
 }

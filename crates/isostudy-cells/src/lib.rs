@@ -9,7 +9,7 @@
 //! - The *hull rule* ([`Cell::hull_patch`]; Bhaniramka, Wenger & Crawfis 2004) takes the convex hull of what is inside or on the
 //!   surface. It also knows corners on the surface itself, and so makes the tables of 3^n entries that snapping needs.
 //!
-//! [`Cell::transition`] is the cell between squares of two resolutions; its 512 patterns are loops by the same rule.
+//! [`Cell::divided`] is a cube at others half as large, with four squares in the place of a side; it has loops by the same rule.
 //!
 //! Loops become triangles by a [`Triangulator`], which draws no diagonal in a face of the cell.
 //!
@@ -41,7 +41,6 @@
 //! - P. Bhaniramka, R. Wenger, R. Crawfis: Isosurface construction in any dimension using convex hulls. IEEE TVCG 10 (2004).
 //! - S. Raman, R. Wenger: Quality isosurface mesh generation using an extended marching cubes lookup table. Computer Graphics
 //!   Forum 27 (2008). The tables with corners on the surface.
-//! - E. Lengyel: Voxel-based terrain for real-time virtual simulations. PhD thesis, UC Davis (2010). Transition cells.
 //! - C. A. Dietrich, C. E. Scheidegger, J. L. D. Comba, L. P. Nedel, C. T. Silva: Edge groups: an approach to understanding the
 //!   mesh quality of marching methods. IEEE TVCG 14 (2008).
 
@@ -57,6 +56,7 @@ mod triangulation;
 pub use cell::{Cell, CellError};
 pub use edge_groups::{EdgeGroup, EdgeGroups, radius_ratio};
 pub use hull_rule::{Label, Point};
+pub use loops::{Loops, Step};
 pub use symmetry::{Symmetry, classes, classes_with_complement, symmetries};
 pub use table::{Table, TableError};
 pub use triangulation::{PolygonTriangles, Triangulator};

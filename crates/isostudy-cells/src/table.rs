@@ -93,7 +93,7 @@ impl Table {
             if !triangles.iter().flatten().all(|&e| is_edge(e)) {
                 return Err(TableError::Edges { entry });
             }
-            let used = triangles.iter().flatten().fold(0u32, |set, &e| set | 1 << e);
+            let used = triangles.iter().flatten().fold(0u64, |set, &e| set | 1 << e);
             if used != cell.crossed(entry as u32) {
                 return Err(TableError::Edges { entry });
             }

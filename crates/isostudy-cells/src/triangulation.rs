@@ -2,23 +2,40 @@
 
 use crate::cell::Cell;
 
-/// Cuts polygons of a cell's edges into triangles, by diagonals that lie in no face of the cell.
+/// Cuts polygons of a cell's edges into triangles, by diagonals that lie in no face of the cell, nor along an edge that is divided.
 ///
-/// A diagonal in a face would be the neighbour's too, and an edge of four triangles if both drew it.
+/// A diagonal in a face would be the neighbour's too, and an edge of four triangles if both drew it. Along a divided edge it would be
+/// that of the cell opposite.
 #[derive(Debug, Clone)]
 pub struct Triangulator {
-    faces_at_edge: Vec<u32>,
+    /// Of each edge, those that its crossing may be joined with, one bit each.
+    partners: Vec<u64>,
 }
 
 impl Triangulator {
     /// One for the polygons of a cell.
     pub fn new(cell: &Cell) -> Self {
-        Self { faces_at_edge: cell.faces_at_edge().to_vec() }
+        let faces = cell.faces_at_edge();
+        let place = |c: u8| cell.corners()[usize::from(c)];
+        // Two halves of an edge have a corner in common, and their others are as far from it on either side.
+        let are_in_line = |[a, b]: [u8; 2], [c, d]: [u8; 2]| {
+            let [a, b, c, d] = [a, b, c, d].map(place);
+            b == c && (0..3).all(|i| b[i] - a[i] == d[i] - c[i])
+        };
+        let within: Vec<bool> = (0..faces.len()).map(|e| cell.is_within_side(e)).collect();
+        let may_join = |a: usize, b: usize| {
+            let ends = [a, b].map(|e| cell.edges()[e]);
+            let in_line = are_in_line(ends[0], ends[1]) || are_in_line(ends[1], ends[0]);
+            (within[a] || !in_line) && faces[a] & faces[b] == 0
+        };
+        let edges = 0..faces.len();
+        let partners = |a: usize| edges.clone().fold(0, |set, b| set | u64::from(may_join(a, b)) << b);
+        Self { partners: edges.clone().map(partners).collect() }
     }
 
-    /// Whether crossings of two edges have no face in common.
+    /// Whether crossings of two edges have no face in common, and are of two edges.
     pub fn may_join(&self, a: u8, b: u8) -> bool {
-        self.faces_at_edge[usize::from(a)] & self.faces_at_edge[usize::from(b)] == 0
+        self.partners[usize::from(a)] >> b & 1 != 0
     }
 
     /// All triangles on one corner of the polygon, the first for which that can be. Where it can be for none, the first
@@ -47,45 +64,11 @@ impl Triangulator {
         mut cost: impl FnMut([u8; 3]) -> f64,
         found: &mut PolygonTriangles,
     ) -> bool {
-        let n = polygon.len();
-        let may = |i: usize, j: usize| {
-            j - i == 1 || (i == 0 && j == n - 1) || self.may_join(polygon[i], polygon[j])
-        };
-        let PolygonTriangles { triangles, best, parts } = found;
-        triangles.clear();
-        best.clear();
-        best.resize(n * n, (0.0, 0));
-        for width in 2..n {
-            for i in 0..n - width {
-                let j = i + width;
-                let mut least = (f64::INFINITY, 0);
-                if may(i, j) {
-                    for k in i + 1..j {
-                        let sum = best[i * n + k].0 + best[k * n + j].0;
-                        if sum < least.0 {
-                            let sum = sum + cost([polygon[i], polygon[k], polygon[j]]);
-                            if sum < least.0 {
-                                least = (sum, k);
-                            }
-                        }
-                    }
-                }
-                best[i * n + j] = least;
-            }
-        }
-        if best[n - 1].0 == f64::INFINITY {
-            return false;
-        }
-        parts.clear();
-        parts.push([0, n - 1]);
-        while let Some([i, j]) = parts.pop() {
-            if j - i >= 2 {
-                let k = best[i * n + j].1;
-                triangles.push([polygon[i], polygon[k], polygon[j]]);
-                parts.extend([[k, j], [i, k]]);
-            }
-        }
-        true
+        let of = |i: usize| polygon[i];
+        let may_join = |i: usize, j: usize| self.may_join(of(i), of(j));
+        let sum = found.find(polygon.len(), may_join, |triangle| cost(triangle.map(|i| of(usize::from(i)))));
+        found.triangles.iter_mut().flatten().for_each(|corner| *corner = of(usize::from(*corner)));
+        sum.is_some()
     }
 }
 
@@ -100,6 +83,53 @@ pub struct PolygonTriangles {
 }
 
 impl PolygonTriangles {
+    /// Finds the triangles of a polygon of `n` corners with the least sum of costs, by diagonals that may be; of several such, those whose
+    /// diagonals come first. Corners are numbered in order. The sum, or `None` where there are none.
+    pub fn find(
+        &mut self,
+        n: usize,
+        may_join: impl Fn(usize, usize) -> bool,
+        mut cost: impl FnMut([u8; 3]) -> f64,
+    ) -> Option<f64> {
+        let may = |i: usize, j: usize| j - i == 1 || (i == 0 && j == n - 1) || may_join(i, j);
+        let Self { triangles, best, parts } = self;
+        triangles.clear();
+        best.clear();
+        best.resize(n * n, (0.0, 0));
+        for width in 2..n {
+            for i in 0..n - width {
+                let j = i + width;
+                let mut least = (f64::INFINITY, 0);
+                if may(i, j) {
+                    for k in i + 1..j {
+                        let sum = best[i * n + k].0 + best[k * n + j].0;
+                        if sum < least.0 {
+                            let sum = sum + cost([i, k, j].map(|corner| corner as u8));
+                            if sum < least.0 {
+                                least = (sum, k);
+                            }
+                        }
+                    }
+                }
+                best[i * n + j] = least;
+            }
+        }
+        let sum = best[n - 1].0;
+        if sum == f64::INFINITY {
+            return None;
+        }
+        parts.clear();
+        parts.push([0, n - 1]);
+        while let Some([i, j]) = parts.pop() {
+            if j - i >= 2 {
+                let k = best[i * n + j].1;
+                triangles.push([i, k, j].map(|corner| corner as u8));
+                parts.extend([[k, j], [i, k]]);
+            }
+        }
+        Some(sum)
+    }
+
     /// They face where the polygon faces.
     pub fn triangles(&self) -> &[[u8; 3]] {
         &self.triangles

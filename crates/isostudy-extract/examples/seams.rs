@@ -8,7 +8,7 @@
 #[path = "../tests/it/seam_survey.rs"]
 mod seam_survey;
 
-use isostudy_extract::{Cubes, DualContouring, Grid, LevelExtractor, LevelSettings, Method, SurfaceNets};
+use isostudy_extract::{ChunkSettings, Cubes, DualContouring, Grid, LevelExtractor, Method, SurfaceNets};
 use seam_survey::{CELL, Found, Kind, RESOLVED, Random, shape, survey, world};
 
 fn main() {
@@ -16,22 +16,18 @@ fn main() {
     let nets = Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 });
     let dc = DualContouring { patches: false, ..DualContouring::default() };
     let all = [
-        ("mc", Method::Cubes(Cubes::default()), 0.0),
-        ("mc", Method::Cubes(Cubes::default()), 0.1),
-        ("mc", Method::Cubes(Cubes::default()), 0.25),
-        ("mc", Method::Cubes(Cubes::default()), 0.5),
-        ("nets", nets, 0.0),
-        ("dc", Method::DualContouring(DualContouring { in_cell: false, ..dc }), 0.0),
-        ("dc in cells", Method::DualContouring(DualContouring { in_cell: true, ..dc }), 0.0),
+        ("mc", Method::Cubes(Cubes::default())),
+        ("nets", nets),
+        ("dc", Method::DualContouring(DualContouring { in_cell: false, ..dc })),
+        ("dc in cells", Method::DualContouring(DualContouring { in_cell: true, ..dc })),
     ];
     println!(
-        "| method, `width` | shape | worlds | seam triangles | turned | of these, seen by the fine level alone | worlds with a turned one | other triangles turned | intersecting pairs | the most in a world | worlds with a pair |"
+        "| method | shape | worlds | seam triangles | turned | of these, seen by the fine level alone | worlds with a turned one | other triangles turned | intersecting pairs | the most in a world | worlds with a pair |"
     );
     println!("|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
-    for (name, method, width) in all {
+    for (name, method) in all {
         let grid = Grid::try_new([0.0; 3], f64::from(CELL) / 2.0).unwrap();
-        let settings = LevelSettings::default().with_width(width);
-        let mut extractor = LevelExtractor::try_new(&grid, &method, &settings).unwrap();
+        let mut extractor = LevelExtractor::try_new(&grid, &method, &ChunkSettings::default()).unwrap();
         for kind in RESOLVED.into_iter().chain([Kind::SmallBall]) {
             let mut sum = Found::default();
             for seed in 0..worlds {
@@ -41,7 +37,7 @@ fn main() {
                 sum.add(survey(&chunks, &*field, true));
             }
             println!(
-                "| `{name}`, {width} | {kind:?} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+                "| `{name}` | {kind:?} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
                 sum.worlds,
                 sum.seam,
                 sum.turned,

@@ -18,5 +18,4 @@ pub use extractor::ChunkExtractor;
 pub use layout::SampleLayout;
 pub use settings::{ChunkSettings, Normals};
 pub use weld::{Mismatch, WeldError, weld_chunks};
-pub(crate) use world::OfLevels;
 pub use world::World;

@@ -104,9 +104,9 @@
 //!
 //! # Levels of detail
 //!
-//! A [`LevelExtractor`] makes chunks of several levels, each with cubes twice as large as the one before. Between chunks that differ by
-//! one level it puts transition cells, for marching cubes, or polygons round minimal edges, for nets and dual contouring with one
-//! vertex per cell. All of them weld to a closed mesh, whatever the samples. A chunk needs the levels of its [`Neighbours`] alone.
+//! A [`LevelExtractor`] makes chunks of several levels, each with cubes twice as large as the one before. Where chunks differ by one
+//! level, coarse cells of marching cubes take what the finer ones have on their sides. Nets and dual contouring with one vertex per
+//! cell have polygons round minimal edges. All of them weld to a closed mesh, whatever the samples. A chunk needs the levels of its [`Neighbours`] alone.
 //!
 //! # Three ways
 //!
@@ -235,11 +235,12 @@ pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCou
 pub use extractor::Extractor;
 pub use isostudy_field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
 pub use lattice::{Arrangement, BoxGrid, CellBox, Grid, GridError, LatticeError};
-pub use levels::{LevelError, LevelExtractor, LevelSettings, Neighbours};
+pub use levels::{LevelError, LevelExtractor, Neighbours};
 pub use measure::{
     Accuracy, DistanceError, IsosurfacePoints, accuracy, accuracy_beside, distances, normal_errors_deg,
     triangle_distances,
 };
+pub use memory::watch_memory;
 pub use method::families::*;
 pub use method::{
     CornerSamples, Kind, Method, MethodError, Preset, Promises, VolumeCells, VolumeCellsError, kinds, presets,

@@ -1,6 +1,23 @@
 //! Vectors that ask for their memory, so that its end is an error and not an abort.
 
 use std::collections::TryReserveError;
+use std::sync::OnceLock;
+
+/// Whoever counts what the process holds.
+static WATCH: OnceLock<fn() -> bool> = OnceLock::new();
+
+/// Has extractions end where `is_short` says that memory is short, for a program that counts what it holds: with
+/// [`ExtractError::NoMemoryForMesh`](crate::ExtractError), as where memory is not to be had. It is asked where
+/// [`Control::cancel`](crate::Control) is looked at, before each layer of samples, on any thread. The first watch stays, for all
+/// extractions of the process.
+pub fn watch_memory(is_short: fn() -> bool) {
+    let _ = WATCH.set(is_short);
+}
+
+/// What the watch says.
+pub(crate) fn is_short() -> bool {
+    WATCH.get().is_some_and(|is_short| is_short())
+}
 
 /// As many of `value` as `len` says.
 pub(crate) fn filled<T: Clone>(len: usize, value: T) -> Result<Vec<T>, TryReserveError> {

@@ -6,11 +6,13 @@ use cap::Cap;
 use glam::Vec3;
 use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
 use isostudy_extract::{
-    Arrangement, Clustering, Execution, ExtractError, Extractor, Placement, Positions, Source, Topology,
+    Arrangement, BoxGrid, Clustering, Execution, ExtractError, Extractor, MethodError, Placement, Positions,
+    Source, Topology, presets, watch_memory,
 };
 use isostudy_field::{Gyroid, Sphere, StudyField};
 use isostudy_mesh::Bounds;
 use std::alloc::System;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[global_allocator]
 static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
@@ -39,6 +41,7 @@ fn main() {
 fn limits() {
     memory_running_out_is_an_error();
     wherever_memory_runs_out_there_is_an_error();
+    every_method_ends_with_an_error();
     a_long_row_takes_what_crosses();
     lattices_cut_by_cubes_take_what_they_say();
 }
@@ -107,6 +110,45 @@ fn wherever_memory_runs_out_there_is_an_error() {
         };
         let failed = (0..AMOUNTS).filter(fails).count();
         assert!(failed > AMOUNTS / 3, "{settings:?}: {failed}");
+    }
+}
+
+/// Bytes beyond which extractions are to end.
+static LIMIT: AtomicUsize = AtomicUsize::new(usize::MAX);
+/// Room beyond them for what cannot be refused: threads that are started, tables of a request.
+const MARGIN: usize = MB / 4;
+
+/// Each named method, on one thread and on two, as the command has it: with a watch that ends what is beyond the limit, and no more than
+/// a margin beyond it for whatever does not ask in time.
+fn every_method_ends_with_an_error() {
+    const AMOUNTS: usize = 12;
+    watch_memory(|| ALLOCATOR.allocated() > LIMIT.load(Ordering::Relaxed));
+    let field: &dyn StudyField = &Gyroid { frequency: 14.0 };
+    let grid = BoxGrid { bounds: Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE }, spacing: 0.125 };
+    for (method, threads) in presets().iter().flat_map(|preset| [1, 2].map(|n| (preset.method, n))) {
+        let execution = Execution { threads };
+        let run = || method.extract(&mut Extractor::new(), field.into(), &grid, 0.0, &execution);
+        let watched = |room: usize| {
+            LIMIT.store(ALLOCATOR.allocated() + room, Ordering::Relaxed);
+            let result = within(room + MARGIN, run);
+            LIMIT.store(usize::MAX, Ordering::Relaxed);
+            result
+        };
+        // Tables that are made once a process are not what is tested.
+        let whole = run().unwrap().mesh;
+        let enough = (0..).map(|i| (MB / 8) << i).find(|&room| watched(room).is_ok()).unwrap();
+        let fails = |amount: &usize| match watched(enough * amount / AMOUNTS) {
+            Ok(found) => {
+                assert!(found.mesh == whole, "{method:?}");
+                false
+            }
+            Err(MethodError::Extract(ExtractError::NoMemoryForMesh | ExtractError::OutOfMemory { .. })) => {
+                true
+            }
+            Err(error) => panic!("{method:?}: {error}"),
+        };
+        let failed = (0..AMOUNTS).filter(fails).count();
+        assert!(failed > 2, "{method:?} on {threads}: {failed}");
     }
 }
 

@@ -52,7 +52,7 @@ pub use noise::{NOISE_CURVATURE, NOISE_SLOPE, noise, noise_and_gradient, noise_r
 pub use scalar_field::{Bound, FromFn, Plain, ScalarField, from_fn};
 pub use sphere::Sphere;
 pub use terrain::{Terrain, TerrainCharacter, TerrainError, TerrainSettings};
-pub use volume::{Beyond, VolumeField, VolumeFieldError};
+pub use volume::{Beyond, VolumeField, VolumeFieldError, VolumeGrid};
 pub use walled::Walled;
 
 use std::any::Any;

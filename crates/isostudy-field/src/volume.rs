@@ -1,5 +1,6 @@
 //! Samples on a regular grid, interpolated.
 
+mod grid;
 mod ranges;
 
 use std::collections::TryReserveError;
@@ -10,6 +11,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3, Vec3};
 use isostudy_mesh::Bounds;
 
+pub use self::grid::VolumeGrid;
 use self::ranges::Ranges;
 use super::{SAFE, StudyField};
 
@@ -95,12 +97,9 @@ impl Error for VolumeFieldError {}
 /// Blocks whose samples are all on one side are never sampled: a tree keeps the range of the samples. Copies share samples and tree.
 #[derive(Debug, Clone)]
 pub struct VolumeField {
-    counts: [usize; 3],
+    grid: VolumeGrid,
     /// Shared by copies, as the ranges are.
     values: Arc<Vec<f32>>,
-    origin: DVec3,
-    steps: DMat3,
-    to_index: DMat3,
     beyond: Beyond,
     /// The least and the greatest sample that is finite.
     value_range: (f32, f32),
@@ -126,17 +125,7 @@ impl VolumeField {
         if product != Some(values.len()) || values.is_empty() {
             return Err(VolumeFieldError::Counts { counts, samples: values.len() });
         }
-        if counts.contains(&1) {
-            return Err(VolumeFieldError::Flat { counts });
-        }
-        let matrix = DMat3::from_cols_array_2d(&steps);
-        let lengths = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
-        let start = DVec3::from_array(origin);
-        let to_index = matrix.inverse();
-        let is_sound = start.is_finite() && to_index.is_finite() && lengths.is_finite();
-        if !is_sound || matrix.determinant().abs() <= 1e-6 * lengths {
-            return Err(VolumeFieldError::Steps { steps, origin });
-        }
+        let grid = VolumeGrid::try_new(counts, origin, steps)?;
         let finite = values.iter().copied().filter(|v| v.is_finite());
         let (low, high) = finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         if low > high {
@@ -147,7 +136,7 @@ impl VolumeField {
         let fall = Fall::Step(if high > low { (high - low).min(f32::MAX) } else { 1.0 });
         let value_range = (low, high);
         let (values, ranges) = (Arc::new(values), Arc::new(ranges));
-        Ok(Self { counts, values, origin: start, steps: matrix, to_index, beyond, value_range, fall, ranges })
+        Ok(Self { grid, values, beyond, value_range, fall, ranges })
     }
 
     /// The same with something else beyond the outermost samples.
@@ -168,41 +157,32 @@ impl VolumeField {
         let change = depth.max(high - low);
         // Nothing is inside, or all samples are equal.
         let change = if change > 0.0 { change } else { 1.0 };
-        Self { beyond, fall: Fall::Length(change / self.shortest_step()), ..self }
+        Self { beyond, fall: Fall::Length(change / self.grid.shortest_step()), ..self }
     }
 
-    /// A box that a surface which was closed ([`closing_at`](Self::closing_at)) stays clear of: half a shortest step more
-    /// than it needs.
+    /// Where its samples lie.
+    pub fn grid(&self) -> &VolumeGrid {
+        &self.grid
+    }
+
+    /// [`VolumeGrid::closing_bounds`].
     pub fn closing_bounds(&self) -> Bounds {
-        self.bounds().grown(1.5 * self.spacing())
+        self.grid.closing_bounds()
     }
 
-    /// The smallest box round all samples; none wider than `f32` can tell from a point.
+    /// [`VolumeGrid::bounds`].
     pub fn bounds(&self) -> Bounds {
-        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for corner in 0..8 {
-            let index =
-                std::array::from_fn(|k| if corner >> k & 1 == 1 { self.counts[k] - 1 } else { 0 } as f64);
-            let p = self.origin + self.steps * DVec3::from_array(index);
-            (min, max) = (min.min(p), max.max(p));
-        }
-        Bounds { min: min.as_vec3(), max: max.as_vec3() }
+        self.grid.bounds()
     }
 
-    /// The shortest distance from sample to sample.
+    /// [`VolumeGrid::spacing`].
     pub fn spacing(&self) -> f32 {
-        self.shortest_step() as f32
+        self.grid.spacing()
     }
 
-    fn shortest_step(&self) -> f64 {
-        let steps = [self.steps.x_axis, self.steps.y_axis, self.steps.z_axis];
-        steps.iter().map(|step| step.length()).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Whether the grid's axes are those of space, in any order and direction.
+    /// [`VolumeGrid::is_axis_aligned`].
     pub fn is_axis_aligned(&self) -> bool {
-        let axes = [self.steps.x_axis, self.steps.y_axis, self.steps.z_axis];
-        axes.iter().all(|step| step.abs().max_element() >= (1.0 - 1e-9) * step.length())
+        self.grid.is_axis_aligned()
     }
 
     /// The smallest and the largest sample; those that are not finite aside.
@@ -210,25 +190,20 @@ impl VolumeField {
         self.value_range
     }
 
-    /// Bytes of the samples and of their ranges.
-    pub fn memory_bytes(&self) -> u64 {
-        (size_of::<f32>() * self.values.capacity() + self.ranges.bytes()) as u64
-    }
-
     /// The value at `p`, with the one at the nearest point of the volume, given in steps.
     fn value(&self, p: Vec3, interpolated: impl Fn(&Self, DVec3) -> f32) -> f32 {
-        let index = self.to_index * (p.as_dvec3() - self.origin);
+        let index = self.grid.to_index * (p.as_dvec3() - self.grid.origin);
         if !index.is_finite() {
             return f32::NAN;
         }
-        let last = DVec3::from_array(self.counts.map(|n| (n - 1) as f64));
+        let last = DVec3::from_array(self.grid.counts.map(|n| (n - 1) as f64));
         let nearest = index.clamp(DVec3::ZERO, last);
         let value = interpolated(self, nearest);
         let way = index - nearest;
         let away = match self.fall {
             Fall::Step(fall) => fall * way.abs().max_element() as f32,
             // Only a number too large for `f32` is infinite, which is as good as far beyond the isovalue.
-            Fall::Length(fall) => (fall * (self.steps * way).length()) as f32,
+            Fall::Length(fall) => (fall * (self.grid.steps * way).length()) as f32,
         };
         match self.beyond {
             Beyond::Continued => value,
@@ -239,7 +214,7 @@ impl VolumeField {
 
     fn interpolated(&self, index: DVec3) -> f32 {
         let (mut at, mut next, mut part) = (0, [0; 3], [0.0f32; 3]);
-        for (k, stride) in self.strides().into_iter().enumerate() {
+        for (k, stride) in self.grid.strides().into_iter().enumerate() {
             let mut first = index[k] as usize;
             part[k] = (index[k] - first as f64) as f32;
             // At a sample the sample: `a + (b - a)` is not `b` where one of them is far larger.
@@ -247,7 +222,7 @@ impl VolumeField {
                 (first, part[k]) = (first + 1, 0.0);
             }
             at += first * stride;
-            next[k] = if first + 1 < self.counts[k] { stride } else { 0 };
+            next[k] = if first + 1 < self.grid.counts[k] { stride } else { 0 };
         }
         let [along, up, back] = next;
         let between = |a: f32, b: f32, part: f32| a + (b - a) * part;
@@ -261,9 +236,9 @@ impl VolumeField {
     #[cold]
     fn value_with_care(&self, p: Vec3) -> f32 {
         // A few units in the last place of the coordinates, in steps.
-        let coordinates = 2.5e-7 * (p.as_dvec3().abs() + self.origin.abs());
-        let slack: [f64; 3] = std::array::from_fn(|k| self.to_index.row(k).abs().dot(coordinates));
-        let strides = self.strides();
+        let coordinates = 2.5e-7 * (p.as_dvec3().abs() + self.grid.origin.abs());
+        let slack: [f64; 3] = std::array::from_fn(|k| self.grid.to_index.row(k).abs().dot(coordinates));
+        let strides = self.grid.strides();
         self.value(p, |_, index| {
             // Samples, and the weight of each.
             let (mut corners, mut count) = ([(0, 1.0); 8], 1);
@@ -286,10 +261,6 @@ impl VolumeField {
             if value.is_finite() { value as f32 } else { f32::NAN }
         })
     }
-
-    fn strides(&self) -> [usize; 3] {
-        [1, self.counts[0], self.counts[0] * self.counts[1]]
-    }
 }
 
 impl StudyField for VolumeField {
@@ -300,19 +271,19 @@ impl StudyField for VolumeField {
 
     /// That of the samples round the box.
     fn range(&self, bounds: Bounds, _value: f32) -> Option<(f32, f32)> {
-        let (min, max) = (bounds.min.as_dvec3() - self.origin, bounds.max.as_dvec3() - self.origin);
-        let centre = self.to_index * ((min + max) * 0.5);
+        let (min, max) = (bounds.min.as_dvec3() - self.grid.origin, bounds.max.as_dvec3() - self.grid.origin);
+        let centre = self.grid.to_index * ((min + max) * 0.5);
         let size = (max - min) * 0.5;
         let turned = DMat3::from_cols(
-            self.to_index.x_axis.abs(),
-            self.to_index.y_axis.abs(),
-            self.to_index.z_axis.abs(),
+            self.grid.to_index.x_axis.abs(),
+            self.grid.to_index.y_axis.abs(),
+            self.grid.to_index.z_axis.abs(),
         );
         let half = turned * size + DVec3::splat(1e-9) + centre.abs() * 1e-12;
         if !centre.is_finite() || !half.is_finite() {
             return None;
         }
-        let last = DVec3::from_array(self.counts.map(|n| (n - 1) as f64));
+        let last = DVec3::from_array(self.grid.counts.map(|n| (n - 1) as f64));
         let (low, high) =
             ((centre - half).clamp(DVec3::ZERO, last), (centre + half).clamp(DVec3::ZERO, last));
         let first = low.to_array().map(|v| v as usize);
@@ -328,8 +299,8 @@ impl StudyField for VolumeField {
             * match self.fall {
                 Fall::Step(fall) => fall * outside.max_element() as f32,
                 Fall::Length(fall) => {
-                    let lengths =
-                        [self.steps.x_axis, self.steps.y_axis, self.steps.z_axis].map(DVec3::length);
+                    let lengths = [self.grid.steps.x_axis, self.grid.steps.y_axis, self.grid.steps.z_axis]
+                        .map(DVec3::length);
                     (fall * outside.dot(DVec3::from_array(lengths))) as f32
                 }
             };

@@ -12,16 +12,22 @@ pub fn deidentified(given: &[Given]) -> Vec<Given> {
     let mut names: BTreeMap<&str, usize> =
         given.iter().map(|given| (given.participant.as_str(), 0)).collect();
     names.values_mut().enumerate().for_each(|(place, number)| *number = place + 1);
-    let width = names.len().to_string().len();
+    let people = names.len();
     let renamed = |given: &Given| {
         let number = names[given.participant.as_str()];
         let screen = given.answer.screen.map(Screen::rounded);
         let answer = Answer { screen, ..given.answer.clone() };
-        Given { participant: format!("p{number:0width$}"), answer, ..*given }
+        Given { participant: name(number, people), answer, ..*given }
     };
     let mut shared: Vec<Given> = given.iter().map(renamed).collect();
     shared.sort_by(|a, b| (&a.participant, a.answer.order).cmp(&(&b.participant, b.answer.order)));
     shared
+}
+
+/// `p07`: of so many people, all as wide.
+fn name(number: usize, people: usize) -> String {
+    let width = people.to_string().len();
+    format!("p{number:0width$}")
 }
 
 /// What the columns of the shared answers mean, in Markdown. The digests are of the forms when the first answer came, and now.
@@ -34,13 +40,17 @@ pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize,
             "The study file was changed after the first answer (forms {then}): texts below are those of forms {now}.\n\n"
         )
     };
+    let people = match participants {
+        0 | 1 => format!("`{}`", name(1, participants)),
+        _ => format!("`{}` to `{}`", name(1, participants), name(participants, participants)),
+    };
     let count = |number: usize, word: &str| format!("{number} {word}{}", if number == 1 { "" } else { "s" });
     format!(
         "# Codebook\n\n\
          Answers to \"{title}\" (study `{study}`, forms {now}): {answers} of {participants}, in `answers.csv`.\n\n{changed}\
          Participants are numbered at random. No name, address, panel identifier or date is in this set.\n\n\
          | column | meaning | values |\n|---|---|---|\n\
-         | `participant` | who answered | `p1`, `p2`, ... |\n\
+         | `participant` | who answered | {people} |\n\
          | `form` | number of the form | 1 to {forms} |\n\
          | `order` | place in the form, practice included | from 1 |\n\
          | `question` | what was compared | id of the study file, with `-r` where it was asked again; `control-1`, ... |\n\
@@ -103,15 +113,13 @@ mod tests {
         assert!(shared.iter().all(|g| g.form == 1 && g.answer.rt_ms == 900));
     }
 
-    #[test]
-    fn a_text_of_the_study_is_no_mark_up() {
-        let texts = ["Left | a", "[None](http://example.org)", "Right"];
-        let file = FormFile {
+    fn file() -> FormFile {
+        FormFile {
             schema: 1,
             study: "trial".into(),
             title: "<script> & *stars*".into(),
             prompt: "Which\nof two?".into(),
-            choices: texts.map(Into::into),
+            choices: ["Left | a", "[None](http://example.org)", "Right"].map(Into::into),
             choices_stacked: None,
             min_surface_px: None,
             consent: String::new(),
@@ -119,8 +127,36 @@ mod tests {
             loop_ms: 100,
             page_scale: 1,
             forms: Vec::new(),
-        };
-        let text = codebook(&file, ("d", "d"), 1, 1);
+        }
+    }
+
+    #[test]
+    fn the_codebook_names_the_participants_that_are_there() {
+        for people in [1, 9, 36] {
+            let given: Vec<Given> = (0..people)
+                .map(|person| Given {
+                    participant: format!("{person:03}"),
+                    form: 1,
+                    answer: Answer {
+                        order: 1,
+                        stimulus: "tani".into(),
+                        choice: Choice::L,
+                        rt_ms: 900,
+                        screen: None,
+                    },
+                })
+                .collect();
+            let shared = deidentified(&given);
+            let [first, last] = [shared.first(), shared.last()].map(|of| &of.unwrap().participant);
+            let said = if first == last { format!("`{first}`") } else { format!("`{first}` to `{last}`") };
+            let text = codebook(&file(), ("d", "d"), people, people);
+            assert!(text.contains(&format!("| who answered | {said} |")), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_text_of_the_study_is_no_mark_up() {
+        let text = codebook(&file(), ("d", "d"), 1, 1);
         assert!(text.contains("&lt;script> &amp; \\*stars\\*"), "{text}");
         assert!(text.contains("Left \\| a, `NP` \\[None\\](http://example.org), `R` Right"), "{text}");
         assert!(text.contains("answer to \"Which of two?\""), "{text}");

@@ -71,7 +71,7 @@ pub enum Problem {
         amount(4 * limit, f64::floor)
     )]
     TooManySamples {
-        /// The sizes as written.
+        /// Samples along the axes.
         sizes: Vec<u64>,
         /// The bytes that their samples need, if they can be counted.
         needed: Option<u64>,

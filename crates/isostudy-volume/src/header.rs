@@ -1,6 +1,7 @@
 //! What headers have in common: lines, numbers, sizes, and where the data is.
 
-use std::io::{BufRead, Read};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use crate::Volume;
@@ -60,26 +61,96 @@ pub(crate) fn three(line: usize, text: &str) -> Result<[f64; 3], Problem> {
     values.try_into().map_err(|_| Problem::line(line, format!("{count} numbers where 3 belong")))
 }
 
-/// The number of samples, if none is missing and all fit the limit.
-pub(crate) fn sample_count(sizes: &[u64], limit_bytes: u64) -> Result<u64, Problem> {
+/// The most samples whose bytes can be counted: eight bytes each in the file, four in memory.
+const COUNTABLE: u64 = isize::MAX as u64 / 8;
+
+/// The number of samples, if none is missing and they can be counted.
+pub(crate) fn sample_count(sizes: &[u64]) -> Result<u64, Problem> {
     if sizes.contains(&0) {
         return Err(Problem::NoSamples { sizes: sizes.to_vec() });
     }
-    // Eight bytes a sample in the file, four in memory, must be countable.
-    let limit = (limit_bytes / 4).min(isize::MAX as u64 / 8);
     let product = sizes.iter().try_fold(1u64, |product, &size| product.checked_mul(size));
-    product.filter(|&samples| samples <= limit).ok_or_else(|| {
-        let needed = product.and_then(|samples| samples.checked_mul(4));
-        Problem::TooManySamples { sizes: sizes.to_vec(), needed, limit }
+    product.filter(|&samples| samples <= COUNTABLE).ok_or_else(|| Problem::TooManySamples {
+        sizes: sizes.to_vec(),
+        needed: None,
+        limit: COUNTABLE,
     })
 }
 
 /// Where samples lie.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Frame {
-    pub(crate) counts: [usize; 3],
-    pub(crate) origin: [f64; 3],
-    pub(crate) steps: [[f64; 3]; 3],
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Frame {
+    /// How many samples there are along each axis of the grid; none is zero.
+    pub counts: [usize; 3],
+    /// Where the first sample lies.
+    pub origin: [f64; 3],
+    /// From one sample to the next, along each axis of the grid. Finite, and no two in one plane with the third.
+    pub steps: [[f64; 3]; 3],
+}
+
+/// A volume of which the header was read, and no sample.
+#[derive(Debug)]
+pub struct Unread {
+    frame: Frame,
+    layout: Layout,
+    header: PathBuf,
+    data: Data,
+}
+
+/// Where the samples are.
+#[derive(Debug)]
+pub(crate) enum Data {
+    /// In the header's own file, from here on.
+    Here(BufReader<File>),
+    /// In a file of their own, named from the header's folder.
+    In(PathBuf),
+}
+
+impl Unread {
+    pub(crate) fn new(frame: Frame, layout: Layout, header: &Path, data: Data) -> Self {
+        Self { frame, layout, header: header.to_owned(), data }
+    }
+
+    /// The header's file.
+    pub fn path(&self) -> &Path {
+        &self.header
+    }
+
+    /// Where its samples lie.
+    pub fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    /// What the samples will take in memory.
+    pub fn memory_bytes(&self) -> u64 {
+        // No overflow: countable.
+        self.layout.samples * crate::SAMPLE_BYTES
+    }
+
+    /// Reads the samples, as [`read`](crate::read).
+    ///
+    /// # Errors
+    /// [`VolumeError`]; [`Problem::TooManySamples`] before anything is read.
+    pub fn read(self, limit_bytes: u64) -> Result<Volume, VolumeError> {
+        let Self { frame, layout, header, data } = self;
+        let needed = layout.samples * crate::SAMPLE_BYTES;
+        if needed > limit_bytes {
+            let sizes = frame.counts.map(|n| n as u64).to_vec();
+            let limit = limit_bytes / crate::SAMPLE_BYTES;
+            return Err(Problem::TooManySamples { sizes, needed: Some(needed), limit }.in_file(&header));
+        }
+        let (read, path) = match data {
+            Data::Here(input) => (data::read(input, &layout), header),
+            Data::In(name) => {
+                let path = header.parent().unwrap_or(Path::new("")).join(name);
+                (data::open(&path).and_then(|input| data::read(input, &layout)), path)
+            }
+        };
+        let values = read.map_err(|problem| problem.in_file(&path))?;
+        let Frame { counts, origin, steps } = frame;
+        Ok(Volume { counts, origin, steps, values })
+    }
 }
 
 impl Frame {
@@ -104,23 +175,5 @@ impl Frame {
         } else {
             Err(Problem::Steps { steps: self.steps, origin: self.origin })
         }
-    }
-
-    /// The volume with the samples of a data file of its own, named from the header's folder.
-    pub(crate) fn with_file(
-        &self,
-        header: &Path,
-        name: impl AsRef<Path>,
-        layout: &Layout,
-    ) -> Result<Volume, VolumeError> {
-        let path: PathBuf = header.parent().unwrap_or(Path::new("")).join(name);
-        data::open(&path)
-            .and_then(|input| data::read(input, layout))
-            .map(|values| self.with(values))
-            .map_err(|problem| problem.in_file(&path))
-    }
-
-    pub(crate) fn with(&self, values: Vec<f32>) -> Volume {
-        Volume { counts: self.counts, origin: self.origin, steps: self.steps, values }
     }
 }

@@ -56,11 +56,15 @@ use std::path::Path;
 
 pub use data::SampleKind;
 pub use error::{Problem, VolumeError};
+pub use header::{Frame, Unread};
 pub use labels::{LABELS_END, NotALabel};
 pub use raw::RawHeader;
 
 /// For [`read`], where memory need not be watched.
 pub const NO_LIMIT: u64 = u64::MAX;
+
+/// Bytes that a sample takes in memory, whatever its type in the file.
+pub const SAMPLE_BYTES: u64 = size_of::<f32>() as u64;
 
 /// Samples on a regular grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,13 +89,22 @@ pub struct Volume {
 /// # Errors
 /// [`VolumeError`], with the file, and the line of the header where one is to blame.
 pub fn read(path: &Path, limit_bytes: u64) -> Result<Volume, VolumeError> {
+    open(path)?.read(limit_bytes)
+}
+
+/// Reads the header of a volume and none of its samples, so that a caller can look at their number and refuse. The data
+/// file is not opened, if it is one of its own.
+///
+/// # Errors
+/// [`VolumeError`], with the file, and the line of the header where one is to blame.
+pub fn open(path: &Path) -> Result<Unread, VolumeError> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match ending.as_str() {
-        "nrrd" | "nhdr" => nrrd::read(path, limit_bytes),
-        "mha" | "mhd" => metaimage::read(path, limit_bytes),
-        "toml" => raw::read(path, limit_bytes),
+        "nrrd" | "nhdr" => nrrd::open(path),
+        "mha" | "mhd" => metaimage::open(path),
+        "toml" => raw::open(path),
         // The header stands beside the data.
-        "raw" => raw::read(&path.with_extension("toml"), limit_bytes),
+        "raw" => raw::open(&path.with_extension("toml")),
         _ => Err(Problem::Ending.in_file(path)),
     }
 }

@@ -2,20 +2,20 @@
 
 use std::path::Path;
 
-use crate::Volume;
 use crate::data::{self, Encoding, Layout, SampleKind, Skip};
 use crate::error::{Problem, VolumeError, shortened};
-use crate::header::{Frame, Lines, numbers, sample_count, three};
+use crate::header::{Data, Frame, Lines, Unread, numbers, sample_count, three};
 
-pub(crate) fn read(path: &Path, limit_bytes: u64) -> Result<Volume, VolumeError> {
+pub(crate) fn open(path: &Path) -> Result<Unread, VolumeError> {
     let here = |problem: Problem| problem.in_file(path);
     let mut lines = Lines::new(data::open(path).map_err(here)?);
     let fields = Fields::read(&mut lines).map_err(here)?;
-    let (frame, layout) = fields.meaning(limit_bytes).map_err(here)?;
-    match fields.data_file.as_str() {
-        "LOCAL" => data::read(lines.into_data(), &layout).map(|values| frame.with(values)).map_err(here),
-        name => frame.with_file(path, name, &layout),
-    }
+    let (frame, layout) = fields.meaning().map_err(here)?;
+    let data = match fields.data_file.as_str() {
+        "LOCAL" => Data::Here(lines.into_data()),
+        name => Data::In(name.into()),
+    };
+    Ok(Unread::new(frame, layout, path, data))
 }
 
 const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -130,7 +130,7 @@ impl Fields {
     }
 
     /// What it all means together.
-    fn meaning(&self, limit_bytes: u64) -> Result<(Frame, Layout), Problem> {
+    fn meaning(&self) -> Result<(Frame, Layout), Problem> {
         if let Some(dimensions) = self.dimensions.filter(|&n| n != 3) {
             return Err(Problem::unsupported("NDims", &dimensions.to_string(), "3 is"));
         }
@@ -139,7 +139,7 @@ impl Fields {
         let &[x, y, z] = &sizes[..] else {
             return Err(Problem::unsupported("DimSize", &format!("{sizes:?}"), "three sizes are"));
         };
-        let samples = sample_count(sizes, limit_bytes)?;
+        let samples = sample_count(sizes)?;
         let counts = [x as usize, y as usize, z as usize];
         // Nor on whether the offset is that of the first sample or of the centre then.
         if self.turn != IDENTITY && self.turn_centre != [0.0; 3] {

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use crate::Volume;
 use crate::data::{self, Encoding, Layout, SampleKind, Skip};
 use crate::error::{Problem, VolumeError, shortened};
-use crate::header::{Frame, Lines, numbers, sample_count};
+use crate::header::{Data, Frame, Lines, Unread, numbers, sample_count};
 
 /// Fields of the format's definition that say nothing of what a sample is or where it lies.
 const PASSED_OVER: [&str; 20] = [
@@ -31,15 +30,16 @@ const PASSED_OVER: [&str; 20] = [
     "measurement frame",
 ];
 
-pub(crate) fn read(path: &Path, limit_bytes: u64) -> Result<Volume, VolumeError> {
+pub(crate) fn open(path: &Path) -> Result<Unread, VolumeError> {
     let here = |problem: Problem| problem.in_file(path);
     let mut lines = Lines::new(data::open(path).map_err(here)?);
     let fields = Fields::read(&mut lines).map_err(here)?;
-    let (frame, layout) = fields.meaning(limit_bytes).map_err(here)?;
-    match &fields.data_file {
-        Some(name) => frame.with_file(path, name, &layout),
-        None => data::read(lines.into_data(), &layout).map(|values| frame.with(values)).map_err(here),
-    }
+    let (frame, layout) = fields.meaning().map_err(here)?;
+    let data = match fields.data_file {
+        Some(name) => Data::In(name.into()),
+        None => Data::Here(lines.into_data()),
+    };
+    Ok(Unread::new(frame, layout, path, data))
 }
 
 /// What the header says, as far as it matters; per-axis fields have a value an axis once `meaning` has checked them.
@@ -155,7 +155,7 @@ impl Fields {
     }
 
     /// What it all means together.
-    fn meaning(&self, limit_bytes: u64) -> Result<(Frame, Layout), Problem> {
+    fn meaning(&self) -> Result<(Frame, Layout), Problem> {
         let dimension = self.dimension.ok_or(Problem::Lacks { key: "dimension" })?;
         let sizes = self.sizes.as_ref().ok_or(Problem::Lacks { key: "sizes" })?;
         let kind = self.kind.ok_or(Problem::Lacks { key: "type" })?;
@@ -173,7 +173,7 @@ impl Fields {
         axes("axis maxs", self.maxs.as_ref().map(Vec::len))?;
         axes("centers", self.cells.as_ref().map(Vec::len))?;
         axes("space directions", self.directions.as_ref().map(Vec::len))?;
-        let samples = sample_count(sizes, limit_bytes)?;
+        let samples = sample_count(sizes)?;
         // Further axes may be there as long as nothing is along them: those without a direction first.
         let mut spatial: Vec<usize> = (0..dimension).collect();
         while spatial.len() > 3 {

@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::Volume;
 use crate::data::{self, Encoding, Layout, SampleKind, Skip};
 use crate::error::{Problem, VolumeError};
-use crate::header::{Frame, sample_count};
+use crate::header::{Data, Frame, Unread, sample_count};
 
 /// Longer than any header of this kind.
 const HEADER_LIMIT: u64 = 1 << 20;
@@ -72,23 +71,23 @@ pub enum RawEncoding {
     Gzip,
 }
 
-pub(crate) fn read(path: &Path, limit_bytes: u64) -> Result<Volume, VolumeError> {
+pub(crate) fn open(path: &Path) -> Result<Unread, VolumeError> {
     let here = |problem: Problem| problem.in_file(path);
-    let (header, frame, layout) = meaning(path, limit_bytes).map_err(here)?;
+    let (header, frame, layout) = meaning(path).map_err(here)?;
     let file = header
         .file
         .unwrap_or_else(|| PathBuf::from(path.with_extension("raw").file_name().unwrap_or_default()));
-    frame.with_file(path, &file, &layout)
+    Ok(Unread::new(frame, layout, path, Data::In(file)))
 }
 
-fn meaning(path: &Path, limit_bytes: u64) -> Result<(RawHeader, Frame, Layout), Problem> {
+fn meaning(path: &Path) -> Result<(RawHeader, Frame, Layout), Problem> {
     let mut text = String::new();
     data::open(path)?.take(HEADER_LIMIT).read_to_string(&mut text)?;
     if text.len() as u64 == HEADER_LIMIT {
         return Err(Problem::HeaderTooLong { limit: HEADER_LIMIT as usize });
     }
     let header: RawHeader = toml::from_str(&text)?;
-    let samples = sample_count(&header.size, limit_bytes)?;
+    let samples = sample_count(&header.size)?;
     let counts = header.size.map(|n| n as usize);
     let (origin, spacing) = (header.origin.unwrap_or_default(), header.spacing.unwrap_or([1.0; 3]));
     let frame = Frame::diagonal(counts, origin, spacing);

@@ -1,10 +1,10 @@
 //! The scalar fields of a study's objects, from what the study file says of them.
 
 use crate::input;
-use crate::memory::Limit;
+use crate::memory::{Limit, OfVolume};
 use crate::mesh_file;
 use crate::source::{self, Options};
-use crate::store::sha256;
+use crate::store::{sha256, sha256_of};
 use crate::study_key::place;
 use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
@@ -123,13 +123,25 @@ fn options(
         }),
         close,
         allow_open: true,
-        limit: limit(study),
+        limit: Limit::of_study(study, isostudy_bench::read_machine().memory_bytes),
+        // Each of the study's methods is held against the limit by itself.
+        method: None,
     }
 }
 
-fn limit(study: &Study) -> Limit {
-    let bytes = (study.file.limits.memory_gib * (1u64 << 30) as f64) as u64;
-    Limit { bytes, name: "limits.memory_gib allows" }
+/// What an object's volume takes, from its header; `None` where the field is no volume, or the file is not there.
+///
+/// # Errors
+/// If the header is none.
+pub(crate) fn volume(study: &Study, number: usize) -> Result<Option<OfVolume>> {
+    let FieldSection::Volume { file, .. } = &study.file.objects[number].field else { return Ok(None) };
+    let path = study.resolve(file);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let unread =
+        isostudy_volume::open(&path).with_context(|| place(study, &format!("objects[{number}].field")))?;
+    Ok(Some(source::held_as_a_field(&unread)))
 }
 
 /// The keys of a terrain: a character, and what differs from it; names and units as in [`isostudy_field::TerrainSettings`].
@@ -249,12 +261,19 @@ pub(crate) fn files(study: &Study, number: usize) -> Result<Vec<(String, String)
         }
         FieldSection::Volume { file, .. } => {
             let path = study.resolve(file);
-            let volume = limit(study).read(&path).with_context(|| format!("objects[{number}].field.file"))?;
+            let limit = Limit::of_study(study, isostudy_bench::read_machine().memory_bytes);
+            let read = || {
+                let unread = isostudy_volume::open(&path)?;
+                let needed = OfVolume::samples(&unread);
+                limit.read(unread, needed)
+            };
+            let volume = read().with_context(|| format!("objects[{number}].field.file"))?;
             // The samples as well: a header may name another file that holds them.
-            let mut bytes =
-                format!("{:?} {:?} {:?}", volume.counts, volume.origin, volume.steps).into_bytes();
-            bytes.extend(volume.values.iter().flat_map(|value| value.to_le_bytes()));
-            Ok(vec![named(file, &path)?, (format!("samples of {file}"), sha256(&bytes))])
+            let lies = format!("{:?} {:?} {:?}", volume.counts, volume.origin, volume.steps).into_bytes();
+            let samples = volume.values.chunks(1 << 14);
+            let samples = samples.map(|part| part.iter().flat_map(|value| value.to_le_bytes()).collect());
+            let digest = sha256_of(std::iter::once(lies).chain(samples));
+            Ok(vec![named(file, &path)?, (format!("samples of {file}"), digest)])
         }
         _ => Ok(Vec::new()),
     }

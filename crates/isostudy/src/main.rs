@@ -40,17 +40,19 @@ mod stored_times;
 mod study_key;
 mod trilinear_truth;
 mod video;
+mod work_time;
 
 use anyhow::Result;
+use cap::Cap;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use outcome::Outcome;
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 use std::alloc::System;
 use std::process::ExitCode;
 
-/// The system's, and a count of what it is asked for.
+/// The system's, with a count of what it is asked for, and a limit where there is one: `memory.rs`.
 #[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+static ALLOCATOR: Cap<&StatsAlloc<System>> = Cap::new(&INSTRUMENTED_SYSTEM, usize::MAX);
 
 /// Wrong usage or input; clap uses the same.
 const INPUT_ERROR: u8 = 2;

@@ -103,7 +103,7 @@ impl Measured for Clock<'_> {
 
 /// What this process's allocator was asked for until now.
 pub(crate) fn asked() -> Asked {
-    let stats = crate::ALLOCATOR.stats();
+    let stats = stats_alloc::INSTRUMENTED_SYSTEM.stats();
     let calls = (stats.allocations + stats.reallocations) as u64;
     Asked { calls, bytes: stats.bytes_allocated as u64 }
 }

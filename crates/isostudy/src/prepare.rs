@@ -139,7 +139,8 @@ pub(crate) fn grid(object: &ObjectSection, spacing: f64) -> BoxGrid {
 pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
     let execution = Execution { threads: cores.max(study.file.benchmark.threads as usize) };
-    let check = |key: String, object: &ObjectSection, id: MethodId, wanted: Wanted| -> Result<()> {
+    let check = |key: String, i: usize, id: MethodId, wanted: Wanted| -> Result<()> {
+        let object = &study.file.objects[i];
         let spacing = wanted.spacing(object);
         let Recipe::Extractor(method) = recipe(study, id, wanted.purpose())? else { return Ok(()) };
         let grid = grid(object, spacing);
@@ -155,21 +156,21 @@ pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
         if let Err(error @ MethodError::Extract(_)) = method.check(&grid) {
             bail!("{}: {error}", recipe::key(study, id));
         }
-        check_memory(study, &method, &grid, &execution, machine_bytes)
+        check_memory(study, i, &method, &grid, &execution, machine_bytes)
             .with_context(|| format!("{} = {spacing:?}", study_key::place(study, &key)))
     };
-    for (i, object) in study.file.objects.iter().enumerate() {
+    for i in 0..study.file.objects.len() {
         for (purpose, name) in
             [(Purpose::Benchmark, "benchmark_spacing"), (Purpose::Stimulus, "stimulus_spacing")]
         {
             for method in &study.methods {
-                check(format!("objects[{i}].{name}"), object, method.id, Wanted::For(purpose))?;
+                check(format!("objects[{i}].{name}"), i, method.id, Wanted::For(purpose))?;
             }
         }
     }
     for (i, still) in study.file.stills.iter().enumerate() {
         let named = study.configurations.iter().find(|c| c.id == still.configuration);
-        let object = study.object(named.expect("checked when the study was read"));
+        let object = named.expect("checked when the study was read").object;
         let wanted = Wanted::Spacing(still.spacing, Purpose::Stimulus);
         check(format!("stills[{i}].spacing"), object, still.configuration.method, wanted)?;
     }
@@ -180,7 +181,7 @@ pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
             for method in &study.methods {
                 let wanted = Wanted::Spacing(factor * object.stimulus_spacing, Purpose::Stimulus);
                 let key = format!("viewer.resolutions[{r}] = {factor:?}: spacing of objects[{i}]");
-                check(key, object, method.id, wanted)?;
+                check(key, i, method.id, wanted)?;
             }
         }
     }
@@ -194,84 +195,38 @@ pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
 pub(crate) fn check_sweep(study: &Study, section: &SweepSection, machine_bytes: Option<u64>) -> Result<()> {
     let threads = section.threads.iter().copied().max().unwrap_or(1) as usize;
     for (i, &cells) in section.cells.iter().enumerate() {
-        for object in study.file.objects.iter().filter(|object| section.objects.contains(&object.id)) {
+        let objects = study.file.objects.iter().enumerate();
+        for (place, object) in objects.filter(|(_, object)| section.objects.contains(&object.id)) {
             let wanted = Wanted::Cells(cells, Purpose::Indexed);
             for of in &study.methods {
                 let Recipe::Extractor(method) = recipe(study, of.id, Purpose::Indexed)? else { continue };
                 let grid = grid(object, wanted.spacing(object));
-                check_memory(study, &method, &grid, &Execution { threads }, machine_bytes).with_context(
-                    || format!("{}: benchmark.sweep.cells[{i}] = {cells}", study.path.display()),
-                )?;
+                check_memory(study, place, &method, &grid, &Execution { threads }, machine_bytes)
+                    .with_context(|| {
+                        format!("{}: benchmark.sweep.cells[{i}] = {cells}", study.path.display())
+                    })?;
             }
         }
     }
     Ok(())
 }
 
-/// Checks that a method goes with a grid, and that what the extractor holds of it fits into what the study allows and the machine
-/// has.
+/// Checks that a method goes with a grid of an object, and that what the extractor holds of it, beside the object's volume, fits into
+/// what the study allows and the machine has.
 ///
 /// # Errors
 /// If it does not, naming the limit.
 pub(crate) fn check_memory(
     study: &Study,
+    object: usize,
     method: &Method,
     grid: &BoxGrid,
     execution: &Execution,
     machine_bytes: Option<u64>,
 ) -> Result<()> {
-    let allowed = (study.file.limits.memory_gib * GIB) as u64;
-    let limit = match machine_bytes {
-        Some(machine) if machine < allowed => Limit { bytes: machine, name: "this machine has" },
-        _ => Limit { bytes: allowed, name: "limits.memory_gib allows" },
-    };
-    check_limit(method, grid, execution, 0, limit)
+    let volume = fields::volume(study, object)?;
+    Limit::of_study(study, machine_bytes).check_method(method, grid, execution, volume)
 }
-
-/// Checks that a method goes with a grid, and that what the extractor holds of it, beside what the field holds already, is not more
-/// than a limit.
-///
-/// # Errors
-/// If it is, naming the limit.
-pub(crate) fn check_limit(
-    method: &Method,
-    grid: &BoxGrid,
-    execution: &Execution,
-    held: u64,
-    limit: Limit,
-) -> Result<()> {
-    check_seeds(method, grid)?;
-    method.check(grid)?;
-    let needed = method.memory_bytes(grid, execution)?;
-    if needed.saturating_add(held) > limit.bytes {
-        let (needed, allowed) = (gibibytes(needed), gibibytes(limit.bytes));
-        let beside =
-            if held > 0 { format!(" beside the volume's {}", gibibytes(held)) } else { String::new() };
-        let what = match method {
-            Method::Tetrahedra(of) => format!("the {} lattice", of.arrangement),
-            _ => "the grid".into(),
-        };
-        bail!("{what} needs {needed}{beside}, {} {allowed}", limit.name);
-    }
-    Ok(())
-}
-
-/// Checks that given seeds lie in the box: the extractor would begin at the nearest cell of it.
-///
-/// # Errors
-/// The first seed that does not.
-pub(crate) fn check_seeds(method: &Method, grid: &BoxGrid) -> Result<()> {
-    let Some(seed) = seeds::outside(method, &grid.bounds) else { return Ok(()) };
-    let Bounds { min, max } = grid.bounds;
-    bail!("{seed}: this seed lies outside of the box, from {} to {}", place(min), place(max))
-}
-
-fn gibibytes(bytes: u64) -> String {
-    let gib = bytes as f64 / GIB;
-    if gib < 1.0 { format!("{:.1} MiB", 1024.0 * gib) } else { format!("{gib:.1} GiB") }
-}
-
-const GIB: f64 = (1u64 << 30) as f64;
 
 #[cfg(test)]
 mod tests {

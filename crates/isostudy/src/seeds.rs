@@ -5,7 +5,7 @@ use anyhow::{Result, bail};
 use glam::{DMat3, DVec3, Vec3};
 use isostudy_extract::{Method, Seeds};
 use isostudy_mesh::Bounds;
-use isostudy_volume::Volume;
+use isostudy_volume::Frame;
 
 /// How far beyond a volume's samples a seed may be, in steps: the volume's own meshes have vertices there by rounding.
 const ROUNDING: f64 = 1e-3;
@@ -31,11 +31,21 @@ pub(crate) fn outside(method: &Method, bounds: &Bounds) -> Option<String> {
     Some(named(i, *seed))
 }
 
+/// Checks that given seeds lie in the box: the extractor would begin at the nearest cell of it.
+///
+/// # Errors
+/// The first seed that does not.
+pub(crate) fn check(method: &Method, bounds: &Bounds) -> Result<()> {
+    let Some(seed) = outside(method, bounds) else { return Ok(()) };
+    let Bounds { min, max } = bounds;
+    bail!("{seed}: this seed lies outside of the box, from {} to {}", place(*min), place(*max))
+}
+
 /// The method for a volume's own cells, where the extractor counts in steps from sample to sample: given seeds are in space.
 ///
 /// # Errors
 /// If a seed lies outside of the samples.
-pub(crate) fn in_steps(method: &Method, volume: &Volume) -> Result<Method> {
+pub(crate) fn in_steps(method: &Method, volume: &Frame) -> Result<Method> {
     let Method::Continuation(continuation) = method else { return Ok(*method) };
     let steps = DMat3::from_cols_array_2d(&volume.steps);
     // Where steps span no space the extractor says so.

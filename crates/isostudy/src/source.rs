@@ -1,6 +1,6 @@
 //! Where a surface comes from: a formula, a volume or a mesh; and where it is looked at.
 
-use crate::memory::Limit;
+use crate::memory::{Limit, OfVolume};
 use crate::mesh_file;
 use crate::place::place;
 use crate::seeds;
@@ -8,9 +8,12 @@ use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use isostudy_expression::{Expression, ExpressionError};
-use isostudy_extract::{BoxGrid, Method};
-use isostudy_field::{Beyond, Holes, MeshDistance, MeshFieldError, Negated, StudyField, VolumeField, Walled};
+use isostudy_extract::{BoxGrid, Execution, Method};
+use isostudy_field::{
+    Beyond, Holes, MeshDistance, MeshFieldError, Negated, StudyField, VolumeField, VolumeGrid, Walled,
+};
 use isostudy_mesh::{Bounds, repair};
+use isostudy_volume::{Frame, Unread, Volume};
 use serde::Serialize;
 use std::path::Path;
 
@@ -42,8 +45,8 @@ pub(crate) struct Source {
     pub(crate) is_closed: bool,
     /// The formula or the file.
     pub(crate) name: String,
-    /// Bytes that a volume's samples take.
-    pub(crate) held: u64,
+    /// What a volume takes of the memory.
+    pub(crate) held: Option<OfVolume>,
     /// What is known of its values, for a surface that is not there.
     values: String,
 }
@@ -61,7 +64,7 @@ pub(crate) struct OwnCells {
 /// A volume as it was read.
 pub(crate) struct VolumeInFile {
     field: VolumeField,
-    samples: usize,
+    held: OfVolume,
     name: String,
 }
 
@@ -92,6 +95,8 @@ pub(crate) struct Options {
     pub(crate) allow_open: bool,
     /// The memory that there is.
     pub(crate) limit: Limit,
+    /// What it is for, if it is for a mesh: what that holds beside a volume is known before the samples are read.
+    pub(crate) method: Option<(Method, Execution)>,
 }
 
 impl Options {
@@ -124,7 +129,7 @@ impl Options {
         let bounds = self.bounds.unwrap_or(bounds);
         let spacing = self.spacing.unwrap_or_else(|| bounds.spacing_of_cells(self.cells.unwrap_or(CELLS)));
         let (name, values) = (name.to_owned(), String::new());
-        Source { field, isovalue, inside, bounds, spacing, is_closed: false, name, held: 0, values }
+        Source { field, isovalue, inside, bounds, spacing, is_closed: false, name, held: None, values }
     }
 
     /// A volume in a file.
@@ -140,71 +145,91 @@ impl Options {
     /// # Errors
     /// If it cannot be read, is too large, or is none.
     pub(crate) fn read_volume(&self, path: &Path) -> Result<VolumeInFile> {
-        let isostudy_volume::Volume { counts, values, origin, steps } = self.limit.read(path)?;
-        let field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)
-            .with_context(|| path.display().to_string())?;
+        let name = || path.display().to_string();
+        let unread = isostudy_volume::open(path)?;
+        let held = held_as_a_field(&unread);
+        let Frame { counts, origin, steps, .. } = unread.frame();
+        let grid = VolumeGrid::try_new(counts, origin, steps).with_context(name)?;
+        let over = self.grid_over(&grid, &name())?;
+        if let Some((method, execution)) = &self.method {
+            let checked = self.limit.check_method(method, &over, execution, Some(held));
+            checked.with_context(|| format!("{}, {}", name(), place_of(&over)))?;
+        }
+        let Volume { values, .. } = self.limit.read(unread, held)?;
+        let field =
+            VolumeField::try_new(counts, values, origin, steps, Beyond::Continued).with_context(name)?;
         if !field.is_axis_aligned() && !self.close {
             let name = path.display();
             tell_once(&format!(
                 "{name}: the grid is turned against the axes; the surface is closed where it leaves it"
             ));
         }
-        Ok(VolumeInFile { field, samples: counts.iter().product(), name: path.display().to_string() })
+        Ok(VolumeInFile { field, held, name: name() })
     }
 
     fn of_volume_read(&self, volume: &VolumeInFile) -> Result<Source> {
-        let VolumeInFile { field, samples, name } = volume;
-        let (mut field, samples) = (field.clone(), *samples);
+        let VolumeInFile { field, held, name } = volume;
+        let mut field = field.clone();
+        let BoxGrid { bounds, spacing } = self.grid_over(field.grid(), name)?;
         let beyond = match self.inside {
             Some(Inside::Below) => Beyond::Rising,
             _ => Beyond::Falling,
         };
         // A box cannot cut off what leaves a turned volume.
         let is_turned = !field.is_axis_aligned();
-        let mut bounds = field.bounds();
         if self.close || is_turned {
             field = field.with_beyond(beyond).closing_at(self.isovalue);
-            bounds = field.closing_bounds();
         }
         let values = values_of(&field);
-        let step = field.spacing();
-        let held = field.memory_bytes();
-        let mut source = self.of_field(Box::new(field), Inside::Above, bounds, name);
-        source.held = held;
+        let source = self.of_field(Box::new(field), Inside::Above, bounds, name);
+        let mut source = Source { spacing, values, held: Some(*held), ..source };
         if self.close || is_turned && self.bounds.is_none() {
             source = source.closed();
         }
-        source.values = values;
+        Ok(source)
+    }
+
+    /// Where a volume is looked at, and how finely.
+    fn grid_over(&self, grid: &VolumeGrid, name: &str) -> Result<BoxGrid> {
+        // A box cannot cut off what leaves a turned volume.
+        let is_closed = self.close || !grid.is_axis_aligned();
+        let own = if is_closed { grid.closing_bounds() } else { grid.bounds() };
+        let bounds = self.bounds.unwrap_or(own);
+        let spacing = match (self.spacing, self.cells) {
+            (Some(spacing), _) => spacing,
+            (None, Some(cells)) => bounds.spacing_of_cells(cells),
+            (None, None) => grid.spacing(),
+        };
         if self.spacing.is_none() && self.cells.is_none() {
-            source.spacing = step;
-            let cubes: f64 =
-                source.bounds.size().to_array().map(|side| f64::from(side / step)).iter().product();
+            let samples: usize = grid.counts().iter().product();
+            let sides = bounds.size().to_array();
+            let cubes: f64 = sides.map(|side| f64::from(side / spacing)).iter().product();
             if cubes > CUBES_A_SAMPLE * samples as f64 {
                 bail!(
-                    "{name}: cubes as small as its smallest step, {step:?}, would be {cubes:.1e} for {samples} samples; \
+                    "{name}: cubes as small as its smallest step, {spacing:?}, would be {cubes:.1e} for {samples} samples; \
                      --spacing or --cells says how many are wanted"
                 );
             }
         }
-        Ok(source)
+        Ok(BoxGrid { bounds, spacing })
     }
 
     /// A volume that is extracted on its own cells: as it is, open where the surface leaves it.
     ///
     /// # Errors
     /// If it is no field.
-    pub(crate) fn of_own_cells(&self, volume: isostudy_volume::Volume, path: &Path) -> Result<OwnCells> {
+    pub(crate) fn of_own_cells(&self, volume: Volume, path: &Path) -> Result<OwnCells> {
         let name = path.display();
-        let isostudy_volume::Volume { counts, values, origin, steps } = volume;
+        let Volume { counts, values, origin, steps } = volume;
         let field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)
             .with_context(|| name.to_string())?;
         let (bounds, is_turned) = (field.bounds(), !field.is_axis_aligned());
-        let (values, held) = (values_of(&field), field.memory_bytes());
+        let values = values_of(&field);
         let source = self.of_field(Box::new(field), Inside::Above, bounds, &name.to_string());
         // The edge of a cube as large as a cell.
         let spacing = glam::DMat3::from_cols_array_2d(&steps).determinant().abs().cbrt() as f32;
         let cells = counts.map(|n| n as u32 - 1);
-        Ok(OwnCells { source: Source { spacing, held, values, ..source }, cells, is_turned })
+        Ok(OwnCells { source: Source { spacing, values, ..source }, cells, is_turned })
     }
 
     /// The distance to a mesh in a file.
@@ -220,6 +245,14 @@ impl Options {
         source.values = format!("; the mesh reaches from {} to {}", place(tight.min), place(tight.max));
         Ok(if self.close { source.closed() } else { source })
     }
+}
+
+/// What a volume takes as a field: its samples, and the ranges of their bricks.
+pub(crate) fn held_as_a_field(unread: &Unread) -> OfVolume {
+    let Frame { counts, origin, steps, .. } = unread.frame();
+    // What is no field has no ranges.
+    let ranges = VolumeGrid::try_new(counts, origin, steps).map_or(0, |grid| grid.range_bytes());
+    OfVolume::samples(unread).with("the ranges of their bricks", ranges)
 }
 
 /// What is known of a volume's values, for a surface that is not there.
@@ -285,6 +318,11 @@ fn mesh_field(path: &Path, allow_open: bool) -> Result<(MeshDistance, Bounds)> {
     }
 }
 
+/// Box and spacing, for people.
+fn place_of(BoxGrid { bounds, spacing }: &BoxGrid) -> String {
+    format!("from {} to {} with spacing {spacing:?}", place(bounds.min), place(bounds.max))
+}
+
 impl Source {
     /// The same, cut off by the walls of its box: whatever leaves it has a surface there.
     fn closed(self) -> Self {
@@ -299,8 +337,7 @@ impl Source {
 
     /// Box and spacing, for people.
     pub(crate) fn place(&self) -> String {
-        let Self { bounds, spacing, .. } = self;
-        format!("from {} to {} with spacing {spacing:?}", place(bounds.min), place(bounds.max))
+        place_of(&self.grid())
     }
 
     /// What is known of its values, as the end of a sentence.

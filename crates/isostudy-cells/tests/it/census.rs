@@ -255,7 +255,7 @@ fn patches_are_discs_whose_sides_are_the_arcs() {
                 let arcs: BTreeSet<[u8; 2]> = (0..cell.faces().len())
                     .flat_map(|f| cell.arcs(f, inside, joined >> f & 1 != 0))
                     .collect();
-                let crossed: u32 = loops.iter().flatten().fold(0, |set, e| set | 1 << e);
+                let crossed: u64 = loops.iter().flatten().fold(0, |set, e| set | 1 << e);
                 assert_eq!(crossed, cell.crossed(inside));
                 assert_eq!(loops.iter().map(Vec::len).sum::<usize>(), crossed.count_ones() as usize);
                 for polygon in &loops {

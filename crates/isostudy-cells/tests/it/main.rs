@@ -1,4 +1,4 @@
 //! The tables of patches, from outside.
 
 mod census;
-mod transition;
+mod divided;

@@ -59,6 +59,12 @@ impl<'a> Bricks<'a> {
         Ok(Self { samples, counts, spans, rows })
     }
 
+    /// Bytes that those of so many samples along the axes take.
+    pub fn bytes_of(counts: [usize; 3]) -> u64 {
+        let [bx, by, bz] = counts.map(|n| n.saturating_sub(1).div_ceil(BRICK) as u64);
+        size_of::<Span>() as u64 * (bx + 1) * by * bz
+    }
+
     /// The samples that they are of.
     pub fn samples(&self) -> GridSamples<'a> {
         self.samples

@@ -6,7 +6,7 @@ use glam::Vec3;
 use isostudy_field::Aabb;
 use isostudy_mesh::TriangleMesh;
 
-use super::world::{OfLevels, World};
+use super::world::World;
 use crate::lattice::CellBox;
 use crate::lattice::endless::Grid;
 use crate::memory::refill;
@@ -198,19 +198,18 @@ impl Chunk {
     }
 
     /// Makes it one of several levels, seams and all.
-    pub(crate) fn close_level(&mut self, of: OfLevels) {
-        self.level = of.level;
-        self.world = self.world.map(|world| World { levels: Some(of), ..world });
+    pub(crate) fn close_level(&mut self, level: u32) {
+        self.level = level;
+        self.world = self.world.map(|world| World { level: Some(level), ..world });
         self.close();
     }
 
-    /// Takes away the vertices of other cells that no triangle has.
-    pub(crate) fn drop_strangers(&mut self) -> Result<(), TryReserveError> {
-        let own = |key: &VertexKey| key.level() == self.level && self.cells.contains(key.cell());
+    /// Takes away the vertices that no triangle has, but for some.
+    pub(crate) fn drop_unused(&mut self, stays: impl Fn(VertexKey) -> bool) -> Result<(), TryReserveError> {
         let mut numbers = Vec::new();
         refill(&mut numbers, self.keys.len(), u32::MAX)?;
         let used = self.triangles.iter().flatten().map(|&v| v as usize);
-        used.chain((0..self.keys.len()).filter(|&v| own(&self.keys[v]))).for_each(|v| numbers[v] = 0);
+        used.chain((0..self.keys.len()).filter(|&v| stays(self.keys[v]))).for_each(|v| numbers[v] = 0);
         let mut next = 0;
         for (v, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number != u32::MAX) {
             let to = next as usize;

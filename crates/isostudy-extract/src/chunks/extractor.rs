@@ -134,7 +134,7 @@ impl ChunkExtractor {
     fn new(place: Place, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
         method.family().check_own()?;
         let how = ByWindow::new(method, settings.isovalue).ok_or(ChunkError::Method)?;
-        let world = World { place, method: *method, settings: *settings, levels: None };
+        let world = World { place, method: *method, settings: *settings, level: None };
         let ByWindow { arrangement, settings, .. } = how;
         check(&settings, arrangement)?;
         if settings.positions != Positions::Indexed {

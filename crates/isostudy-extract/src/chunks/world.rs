@@ -13,17 +13,8 @@ pub struct World {
     pub(super) place: Place,
     pub(super) method: Method,
     pub(super) settings: ChunkSettings,
-    /// Of chunks that there are several levels of.
-    pub(crate) levels: Option<OfLevels>,
-}
-
-/// One of several levels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct OfLevels {
-    /// Of the grid.
-    pub(crate) level: u32,
-    /// Of transitions, in cells.
-    pub(crate) width: f32,
+    /// Of the grid, where there are several.
+    pub(crate) level: Option<u32>,
 }
 
 /// Where the cells are.
@@ -62,10 +53,10 @@ impl World {
 
     /// The same for all chunks that weld: with levels, the world of the finest one.
     pub(super) fn of_finest(self) -> Self {
-        let (Some(OfLevels { level, width }), Place::Endless(grid)) = (self.levels, self.place) else {
+        let (Some(level), Place::Endless(grid)) = (self.level, self.place) else {
             return self;
         };
-        Self { place: Place::Endless(grid.finer(level)), levels: Some(OfLevels { level: 0, width }), ..self }
+        Self { place: Place::Endless(grid.finer(level)), level: Some(0), ..self }
     }
 
     /// The lowest corner of a cell.
@@ -91,10 +82,8 @@ impl fmt::Display for World {
         }
         let ChunkSettings { isovalue, normals } = self.settings;
         write!(f, " with isovalue {isovalue} and normals {normals:?} by {:?}", self.method)?;
-        match self.levels {
-            Some(OfLevels { level, width }) => {
-                write!(f, " at level {level} with transitions of {width} cells")
-            }
+        match self.level {
+            Some(level) => write!(f, " at level {level}"),
             None => Ok(()),
         }
     }

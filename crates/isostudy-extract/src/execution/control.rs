@@ -5,6 +5,7 @@ use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::extraction::ExtractError;
+use crate::memory::is_short;
 use crate::settings::Execution;
 
 /// Threads that somebody else has: a game's job system, a pool.
@@ -118,10 +119,11 @@ impl<'a> Control<'a> {
     }
 
     /// # Errors
-    /// [`ExtractError::Cancelled`] if somebody said so.
+    /// [`ExtractError::Cancelled`] if somebody said so, [`ExtractError::NoMemoryForMesh`] if the [watch](crate::watch_memory) did.
     pub(crate) fn check(&self) -> Result<(), ExtractError> {
         match self.cancel {
             Some(cancel) if cancel.load(Ordering::Relaxed) => Err(ExtractError::Cancelled),
+            _ if is_short() => Err(ExtractError::NoMemoryForMesh),
             _ => Ok(()),
         }
     }

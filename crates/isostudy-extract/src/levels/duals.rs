@@ -256,7 +256,7 @@ impl Known {
     pub(super) fn learn(&mut self, chunk: &Chunk, level: u32) -> Result<(), TryReserveError> {
         self.vertices.try_reserve(chunk.keys.len())?;
         for (v, key) in chunk.keys.iter().enumerate() {
-            self.vertices.insert(key.at_level(level, 0), (chunk.positions[v], chunk.normals.get(v).copied()));
+            self.vertices.insert(key.at_level(level), (chunk.positions[v], chunk.normals.get(v).copied()));
         }
         Ok(())
     }
@@ -281,7 +281,7 @@ impl Corners<'_> {
         {
             return Ok(v as u32);
         }
-        let [of_cell, of_sides] = [OF_CELL, OF_SIDES].map(|number| key(number).at_level(level, 0));
+        let [of_cell, of_sides] = [OF_CELL, OF_SIDES].map(|number| key(number).at_level(level));
         if let Some(&v) = self.added.get(&of_cell).or_else(|| self.added.get(&of_sides)) {
             return Ok(v);
         }

@@ -17,11 +17,6 @@ pub enum LevelError {
     Chunk(ChunkError),
     /// A method without levels.
     Method,
-    /// A width that is none.
-    Width {
-        /// As given.
-        width: f32,
-    },
     /// A level that there is not.
     Level {
         /// As given.
@@ -50,7 +45,6 @@ in_words! {
         Self::Chunk(error) => "{error}";
         Self::Method =>
             "levels are for marching cubes, and for surface nets and dual contouring with one vertex a cell";
-        Self::Width { width } => "width = {width:?}: must be from 0 to 0.5, in cells";
         Self::Level { level } =>
             "level {level}: there are levels 0 to {COARSEST}, as far as cubes are finite in f32";
         Self::Step { direction, levels } =>

@@ -1,48 +1,20 @@
 //! Extraction of chunks of all levels.
 
-use std::collections::{HashMap, TryReserveError};
-
 use isostudy_field::{Plain, StudyField};
 
+use super::divided::Divisions;
 use super::duals::{Known, Needed, Seams};
 use super::error::{COARSEST, LevelError};
-use super::layer::{Plane, layer};
+use super::layer::layers;
 use super::neighbours::Neighbours;
-use super::shift::Shift;
-use super::transitions::{Corner, Decision, triangulate};
-use crate::chunks::{Chunk, ChunkExtractor, ChunkSettings, OfLevels};
+use super::stitching::{Decision, Stitching};
+use crate::chunks::{Chunk, ChunkExtractor, ChunkSettings};
 use crate::cubes::Faces;
 use crate::execution::control::Control;
 use crate::lattice::CellBox;
 use crate::lattice::endless::Grid;
-use crate::memory::push;
 use crate::method::Method;
-use crate::sampling::level::Level;
 use crate::source::Source;
-use crate::surface::trace::VertexKey;
-
-/// Settings of chunks of several levels. Those that weld have the same.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[non_exhaustive]
-pub struct LevelSettings {
-    /// As for chunks of one level.
-    pub chunks: ChunkSettings,
-    /// How far chunks of marching cubes stand back from finer ones, in cells of their own: 0 to 0.5. With 0, the default, the seams lie in
-    /// the sides of the chunks; then their triangles face along an axis, which shows in flat shading.
-    pub width: f32,
-}
-
-impl LevelSettings {
-    /// The same with settings of chunks.
-    pub fn with_chunks(self, chunks: ChunkSettings) -> Self {
-        Self { chunks, ..self }
-    }
-
-    /// The same with a width of transitions.
-    pub fn with_width(self, width: f32) -> Self {
-        Self { width, ..self }
-    }
-}
 
 /// Extracts boxes of cells of several levels, with the seams to neighbours that are coarser or finer by one level: all chunks of a world
 /// [weld](crate::weld_chunks) to a closed mesh.
@@ -50,13 +22,12 @@ impl LevelSettings {
 /// Level 0 is the finest. Level `n` has the cells of [`Grid::coarser(n)`](Grid::coarser).
 ///
 /// ```
-/// use isostudy_extract::{Control, Cubes, Grid, LevelExtractor, LevelSettings, Method, Neighbours, from_fn, weld_chunks};
+/// use isostudy_extract::{ChunkSettings, Control, Cubes, Grid, LevelExtractor, Method, Neighbours, from_fn, weld_chunks};
 /// use isostudy_mesh::topology::topology;
 ///
 /// let grid = Grid::try_new([0.0; 3], 0.25)?;
 /// let method = Method::Cubes(Cubes::default());
-/// let settings = LevelSettings::default().with_width(0.25);
-/// let mut extractor = LevelExtractor::try_new(&grid, &method, &settings)?;
+/// let mut extractor = LevelExtractor::try_new(&grid, &method, &ChunkSettings::default())?;
 /// let ball = from_fn(|[x, y, z]| 3.1 - (x * x + y * y + z * z).sqrt());
 /// // East of the middle chunks of level 0 with 16 cells a side, west of it of level 1 with 8.
 /// let mut chunks = Vec::new();
@@ -76,35 +47,35 @@ impl LevelSettings {
 /// # Guaranteed
 ///
 /// - A chunk of the level without neighbours of other levels is that of a [`ChunkExtractor`] on the level's grid.
-/// - Chunks that were all told the truth about their neighbours have no open edge between them, whatever the field.
+/// - Chunks that were all told the truth about their neighbours have no open edge between them, whatever the field. Of marching cubes
+///   they are a manifold.
 /// - A vertex on a seam is the neighbour's own to the bit, and so is its normal.
 ///
 /// # Not guaranteed
 ///
-/// - A field finer than a level's cells may differ there from what the next level has; the seam then has a piece of surface that lies in
-///   the side between the chunks.
+/// - A field finer than a level's cells may differ there from what the next level has; what only the finer one sees ends in the coarse
+///   cells at the seam. Its triangles may face any way.
+/// - With [`Faces::Trilinear`], coarse cells at a finer neighbour have no tunnels.
 #[derive(Debug)]
 pub struct LevelExtractor {
     grid: Grid,
     method: Method,
-    settings: LevelSettings,
+    settings: ChunkSettings,
     /// By level, as they are asked for.
     extractors: Vec<Option<ChunkExtractor>>,
     /// A layer of a neighbour's cells.
     layer: Chunk,
-    plane: Plane,
+    stitching: Stitching,
     /// Vertices of neighbours' cells.
     known: Known,
-    /// Vertices of other levels that a chunk has, by key.
-    added: HashMap<VertexKey, u32>,
 }
 
 impl LevelExtractor {
     /// An extractor for chunks of all levels, of which `grid` has the cells of the finest. It has no buffers yet.
     ///
     /// # Errors
-    /// [`LevelError::Method`], [`LevelError::Width`]; [`LevelError::Chunk`] for what [`ChunkExtractor::try_new`] refuses.
-    pub fn try_new(grid: &Grid, method: &Method, settings: &LevelSettings) -> Result<Self, LevelError> {
+    /// [`LevelError::Method`]; [`LevelError::Chunk`] for what [`ChunkExtractor::try_new`] refuses.
+    pub fn try_new(grid: &Grid, method: &Method, settings: &ChunkSettings) -> Result<Self, LevelError> {
         let has_levels = match method {
             Method::Cubes(_) => true,
             Method::SurfaceNets(nets) => !nets.patches,
@@ -114,19 +85,14 @@ impl LevelExtractor {
         if !has_levels {
             return Err(LevelError::Method);
         }
-        let width = settings.width;
-        if !(0.0..=0.5).contains(&width) {
-            return Err(LevelError::Width { width });
-        }
         let mut made = Self {
             grid: *grid,
             method: *method,
             settings: *settings,
             extractors: Vec::new(),
             layer: Chunk::default(),
-            plane: Plane::default(),
+            stitching: Stitching::default(),
             known: Known::default(),
-            added: HashMap::new(),
         };
         made.at(0)?;
         Ok(made)
@@ -144,19 +110,7 @@ impl LevelExtractor {
             return neighbours
                 .only(|direction, _| direction.iter().all(|&d| d <= 0) && axes(direction).count() < 3);
         }
-        if self.settings.width > 0.0 {
-            // Where a finer chunk touches a corner of the chunk, all that touch it decide on its place.
-            return neighbours.only(|direction, _| neighbours.has_finer_at(direction));
-        }
-        // One at an edge decides whether vertices in the edge are its own, too, if those at both sides are finer.
-        let is_finer = |direction: [i32; 3]| {
-            axes(direction).all(|axis| {
-                let mut side = [0; 3];
-                side[axis] = direction[axis];
-                neighbours.step(side) < 0
-            })
-        };
-        neighbours.only(|direction, _| is_finer(direction) && axes(direction).count() < 3)
+        neighbours.only(|direction, _| neighbours.dividing().any(|dividing| dividing == direction))
     }
 
     /// Extracts the surface in a box of cells of a level, as [`extract_into`](Self::extract_into).
@@ -218,11 +172,11 @@ impl LevelExtractor {
             Method::Cubes(cubes) => self.cubes(field, cubes.faces, job, chunk)?,
             _ => self.duals(field, job, chunk)?,
         }
-        chunk.close_level(OfLevels { level, width: self.settings.width });
+        chunk.close_level(level);
         Ok(())
     }
 
-    /// Adds transition cells, and moves the chunk's own vertices back from them.
+    /// Makes the cells at finer neighbours anew.
     fn cubes(
         &mut self,
         field: &dyn StudyField,
@@ -230,27 +184,25 @@ impl LevelExtractor {
         job: &Job,
         chunk: &mut Chunk,
     ) -> Result<(), LevelError> {
-        let Job { level, cells, neighbours, .. } = *job;
+        let Job { source, level, cells, neighbours, control } = *job;
         let own = chunk.keys.len();
-        self.added.clear();
-        for side in (0..6).map(|side| (side / 2, side % 2 != 0)) {
-            let mut direction = [0; 3];
-            direction[side.0] = if side.1 { 1 } else { -1 };
-            if neighbours.step(direction) < 0 {
-                self.transitions(field, faces, side, job, (chunk, own))?;
+        if neighbours.dividing().next().is_some() {
+            let (fine, divisions) = (level - 1, Divisions::new(cells, neighbours));
+            let mut stitching = std::mem::take(&mut self.stitching);
+            stitching.begin(&divisions, chunk)?;
+            for cells in layers(cells, neighbours) {
+                self.extract_layer(fine, source, cells, control)?;
+                stitching.learn(&self.layer, fine, &divisions, chunk)?;
+                chunk.also_sampled(&self.layer);
             }
+            let grid = self.grid_of(fine)?;
+            let ChunkSettings { isovalue, normals } = self.settings;
+            let decision = Decision { faces, field, isovalue, normals, grid: &grid };
+            stitching.fill(&decision, &divisions, chunk)?;
+            self.stitching = stitching;
         }
-        let (width, grid) = (self.settings.width, self.grid_of(level)?);
-        let shift = Shift::new(cells, &grid, neighbours, width);
-        let (isovalue, spacing) = (self.settings.chunks.isovalue, grid.spacing() as f32);
-        let surface = Level { field, isovalue, spacing };
-        for (key, p) in chunk.keys[..own].iter_mut().zip(&mut chunk.positions) {
-            if width > 0.0 {
-                *p = shift.moved(*key, *p, &surface);
-            }
-            *key = key.at_level(level, shift.copy(*key));
-        }
-        Ok(())
+        chunk.keys[..own].iter_mut().for_each(|key| *key = key.at_level(level));
+        Ok(chunk.drop_unused(|_| false)?)
     }
 
     /// Puts polygons of several levels in the place of those at sides whose neighbours are of another level.
@@ -260,8 +212,8 @@ impl LevelExtractor {
         let grid = |step: i32| level.checked_add_signed(step).and_then(|level| self.grid_of(level).ok());
         let seams = Seams {
             field,
-            isovalue: self.settings.chunks.isovalue,
-            normals: self.settings.chunks.normals,
+            isovalue: self.settings.isovalue,
+            normals: self.settings.normals,
             is_sharp: matches!(self.method, Method::DualContouring(_)),
             level,
             cells,
@@ -277,8 +229,9 @@ impl LevelExtractor {
         }
         seams.remove(chunk);
         seams.add(&self.known, chunk)?;
-        chunk.keys[..own].iter_mut().for_each(|key| *key = key.at_level(level, 0));
-        Ok(chunk.drop_strangers()?)
+        chunk.keys[..own].iter_mut().for_each(|key| *key = key.at_level(level));
+        // Those of its own cells stay: neighbours may have a polygon at them.
+        Ok(chunk.drop_unused(|key| key.level() == level && cells.contains(key.cell()))?)
     }
 
     /// Extracts cells of a level into `self.layer`.
@@ -298,45 +251,6 @@ impl LevelExtractor {
         extracted
     }
 
-    /// Adds the transition cells of a side.
-    fn transitions(
-        &mut self,
-        field: &dyn StudyField,
-        faces: Faces,
-        side: (usize, bool),
-        job: &Job,
-        (chunk, own): (&mut Chunk, usize),
-    ) -> Result<(), LevelError> {
-        let Job { source, level, cells, control, .. } = *job;
-        let (across, is_high) = side;
-        let fine = level - 1;
-        let grid = self.grid_of(fine)?;
-        let ends = [cells.start, cells.end].map(|corner| corner.map(|i| i.saturating_mul(2)));
-        let cells_there = layer(across, ends[usize::from(is_high)][across], ends);
-        self.extract_layer(fine, source, cells_there, control)?;
-        let isovalue = self.settings.chunks.isovalue;
-        self.plane.read(across, &self.layer, (field, isovalue), &grid)?;
-        let Self { layer, plane, added, .. } = self;
-        let decision = Decision { faces, field, isovalue, grid: &grid };
-        let mut triangles: Vec<([i32; 3], [Corner; 3])> = Vec::new();
-        let take = |cell, triangle| push(&mut triangles, (cell, triangle));
-        triangulate((chunk, own), side, plane, &decision, take)?;
-        for (cell, triangle) in triangles {
-            let mut numbers = [0; 3];
-            for (number, corner) in numbers.iter_mut().zip(triangle) {
-                *number = match corner {
-                    Corner::Own(v) => v,
-                    Corner::Fine(v) => add(added, chunk, layer, v, fine)?,
-                };
-            }
-            push(&mut chunk.triangles, numbers)?;
-            push(&mut chunk.triangle_cells, chunk.cells.number(cell))?;
-            chunk.seam += 1;
-        }
-        chunk.also_sampled(layer);
-        Ok(())
-    }
-
     fn grid_of(&self, level: u32) -> Result<Grid, LevelError> {
         self.grid.coarser(level).map_err(|_| LevelError::Level { level })
     }
@@ -352,7 +266,7 @@ impl LevelExtractor {
         }
         let made = match self.extractors[i].take() {
             Some(made) => made,
-            None => ChunkExtractor::try_new(&self.grid_of(level)?, &self.method, &self.settings.chunks)?,
+            None => ChunkExtractor::try_new(&self.grid_of(level)?, &self.method, &self.settings)?,
         };
         Ok(self.extractors[i].insert(made))
     }
@@ -366,28 +280,4 @@ struct Job<'a> {
     cells: CellBox,
     neighbours: &'a Neighbours,
     control: Control<'a>,
-}
-
-/// The number that a vertex of a layer of another level has in a chunk; the next one, if it is new.
-fn add(
-    added: &mut HashMap<VertexKey, u32>,
-    chunk: &mut Chunk,
-    layer: &Chunk,
-    v: u32,
-    level: u32,
-) -> Result<u32, TryReserveError> {
-    let v = v as usize;
-    let key = layer.keys[v].at_level(level, 0);
-    if let Some(&number) = added.get(&key) {
-        return Ok(number);
-    }
-    let number = chunk.keys.len() as u32;
-    added.try_reserve(1)?;
-    added.insert(key, number);
-    push(&mut chunk.keys, key)?;
-    push(&mut chunk.positions, layer.positions[v])?;
-    if let Some(&normal) = layer.normals.get(v) {
-        push(&mut chunk.normals, normal)?;
-    }
-    Ok(number)
 }

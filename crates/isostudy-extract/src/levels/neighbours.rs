@@ -68,16 +68,21 @@ impl Neighbours {
         self.steps.iter().any(|&step| step < 0)
     }
 
-    /// Whether a finer chunk touches one of the chunk's corners that the neighbour in a direction touches.
-    pub(super) fn has_finer_at(&self, direction: [i32; 3]) -> bool {
-        let touches = |corner: [i32; 3], direction: [i32; 3]| {
-            (0..3).all(|axis| direction[axis] == 0 || direction[axis] == corner[axis])
-        };
-        let is_corner = |direction: &[i32; 3]| !direction.contains(&0);
-        let corners = DIRECTIONS.into_iter().filter(is_corner).filter(|&corner| touches(corner, direction));
-        let mut touching = corners
-            .flat_map(|corner| DIRECTIONS.into_iter().filter(move |&direction| touches(corner, direction)));
-        touching.any(|direction| self.step(direction) < 0)
+    /// The directions to finer neighbours that divide something of the chunk's cells: sides, and edges between sides that are not divided.
+    pub(super) fn dividing(&self) -> impl Iterator<Item = [i32; 3]> + use<> {
+        let of = *self;
+        DIRECTIONS.into_iter().filter(move |&direction| {
+            let mut sides = (0..3).filter(|&axis| direction[axis] != 0).map(|axis| {
+                let mut side = [0; 3];
+                side[axis] = direction[axis];
+                side
+            });
+            match direction.iter().filter(|&&d| d != 0).count() {
+                1 => of.step(direction) < 0,
+                2 => of.step(direction) < 0 && sides.all(|side| of.step(side) >= 0),
+                _ => false,
+            }
+        })
     }
 
     /// Those in some directions; the others are of the chunk's own level.

@@ -108,8 +108,7 @@ fn join(pieces: &mut [Piece], most_vertices: u32, on: Threads) -> Result<Vec<Sea
         base += piece.surface.triangles.len();
         first.targets.append(&mut piece.targets);
         if let (Some(whole), Some(trace)) = (&mut first.surface.trace, &mut piece.surface.trace) {
-            whole.keys.append(&mut trace.keys);
-            whole.cells.append(&mut trace.cells);
+            whole.append(trace)?;
         }
         first.surface.cells_visited += piece.surface.cells_visited;
         first.surface.tetrahedra_evaluated += piece.surface.tetrahedra_evaluated;

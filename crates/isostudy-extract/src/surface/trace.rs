@@ -13,16 +13,14 @@ use crate::lattice::{Arrangement, Lattice, cell_of_stored};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct VertexKey(u128);
 
-/// Bits for a direction: at most 32 of them.
-const DIRECTION_BITS: u32 = 5;
+/// Bits for a direction: at most 32 of them, and as many for vertices that seams add.
+const DIRECTION_BITS: u32 = 6;
 /// Bits for a place among stored points along an axis: of half cells, with numbers of 32 bits and some to spare.
 const PLACE_BITS: u32 = 34;
 /// Added to places, so that none is negative.
 const BIAS: i64 = 1 << (PLACE_BITS - 1);
-/// Above the place, two bits for the arrangement; above these, five for the level and two for the copy.
+/// Above the place, two bits for the arrangement; above these, the level.
 const LEVEL_SHIFT: u32 = DIRECTION_BITS + 3 * PLACE_BITS + 2;
-/// Bits for a level.
-const LEVEL_BITS: u32 = 5;
 
 impl VertexKey {
     /// Of a stored point of the whole lattice.
@@ -53,15 +51,14 @@ impl VertexKey {
         (self.0 & ((1 << DIRECTION_BITS) - 1)) as usize
     }
 
-    /// The same in the grid of a level. Where chunks meet in an edge and have finer ones between them, each has a copy of its own.
-    pub(crate) fn at_level(self, level: u32, copy: u8) -> Self {
-        let tag = u128::from(copy) << LEVEL_BITS | u128::from(level);
-        Self(self.0 & ((1 << LEVEL_SHIFT) - 1) | tag << LEVEL_SHIFT)
+    /// The same in the grid of a level.
+    pub(crate) fn at_level(self, level: u32) -> Self {
+        Self(self.0 & ((1 << LEVEL_SHIFT) - 1) | u128::from(level) << LEVEL_SHIFT)
     }
 
     /// The level whose grid the vertex is of: 0 but for chunks of a [`LevelExtractor`](crate::LevelExtractor).
     pub fn level(self) -> u32 {
-        (self.0 >> LEVEL_SHIFT) as u32 & ((1 << LEVEL_BITS) - 1)
+        (self.0 >> LEVEL_SHIFT) as u32
     }
 
     /// The key as a number: for a hash table of one's own, or a file.
@@ -91,6 +88,15 @@ impl Trace {
         Ok(())
     }
 
+    /// Takes over what another one has.
+    pub(crate) fn append(&mut self, other: &mut Self) -> Result<(), TryReserveError> {
+        self.keys.try_reserve(other.keys.len())?;
+        self.cells.try_reserve(other.cells.len())?;
+        self.keys.append(&mut other.keys);
+        self.cells.append(&mut other.cells);
+        Ok(())
+    }
+
     pub(crate) fn clear(&mut self) {
         self.keys.clear();
         self.cells.clear();
@@ -116,9 +122,9 @@ mod tests {
         assert_eq!(key([-3, 4, -5], 3).cell(), [-3, 4, -5]);
         assert!(key([9, 9, -1], 13) < key([-9, -9, 0], 0) && key([9, -1, 0], 13) < key([-9, 0, 0], 0));
         assert!(key([-1, 0, 0], 13) < key([0, 0, 0], 0) && key([0, 0, 0], 0) < key([0, 0, 0], 1));
-        let tagged = key([-3, 4, -5], 13).at_level(31, 2);
+        let tagged = key([-3, 4, -5], 13).at_level(31);
         assert_eq!((tagged.stored(), tagged.direction(), tagged.level()), ([-3, 4, -5], 13, 31));
-        assert_eq!((tagged.cell(), tagged.at_level(0, 0)), ([-3, 4, -5], key([-3, 4, -5], 13)));
+        assert_eq!((tagged.cell(), tagged.at_level(0)), ([-3, 4, -5], key([-3, 4, -5], 13)));
         // The centre of a body-centred cell, and its lowest corner.
         let centred = |place| VertexKey::new(Arrangement::BodyCentred, place, 0).cell();
         assert_eq!(centred([0, 0, 0]), [-1; 3]);

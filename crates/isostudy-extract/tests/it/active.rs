@@ -19,6 +19,15 @@ use isostudy_mesh::Bounds;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+#[test]
+fn bricks_take_what_was_said_before_there_were_any() {
+    for counts in [[2, 2, 2], [9, 10, 11], [3, 40, 17], [66, 5, 9]] {
+        let values = vec![0.5; counts.iter().product()];
+        let bricks = Bricks::try_new(GridSamples::try_new(counts, &values).unwrap()).unwrap();
+        assert_eq!(Bricks::bytes_of(counts), bricks.bytes() as u64, "{counts:?}");
+    }
+}
+
 /// By corners, one by one.
 fn by_the_rule(counts: [usize; 3], values: &[f32], isovalue: f32) -> BTreeSet<u32> {
     let [nx, ny, nz] = counts;

@@ -5,14 +5,14 @@ use std::collections::HashMap;
 use glam::Vec3;
 use isostudy_extract::{
     Aabb, Arrangement, CellBox, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Control, Cubes, Diagonals,
-    DualContouring, Faces, Grid, LevelError, LevelExtractor, LevelSettings, Method, Neighbours, Normals,
-    Placement, ScalarField, Source, SurfaceNets, Tetrahedra, WeldError, from_fn, weld_chunks,
+    DualContouring, Faces, Grid, LevelError, LevelExtractor, Method, Neighbours, Normals, Placement,
+    ScalarField, Source, SurfaceNets, Tetrahedra, WeldError, from_fn, weld_chunks,
 };
 use isostudy_mesh::topology::topology;
 
 use crate::two_levels::{
-    CELLS, NEARLY_FLAT, Octree, REACH, Turned, ball, by_position, chunks, extractor, noise, open_edges,
-    shapes, turned_over, welded,
+    CELLS, Octree, REACH, ball, by_position, chunks, extractor, noise, open_edges, shapes, turned_over,
+    welded,
 };
 
 fn cubes(faces: Faces, diagonals: Diagonals) -> Method {
@@ -30,37 +30,25 @@ const PLANES: Method = Method::DualContouring(DualContouring {
 
 const FACES: [Faces; 4] = [Faces::SeparateInside, Faces::JoinInside, Faces::Decider, Faces::Trilinear];
 
-/// Whether two coarse octants meet in an edge with fine ones on both sides of it. There a fine edge may have four triangles.
-fn meet_in_an_edge(fine: u32) -> bool {
-    let is_fine = |octant: u32| fine >> octant & 1 != 0;
-    (0..8).any(|one| {
-        [[1, 2], [2, 4], [4, 1]]
-            .into_iter()
-            .any(|[a, b]| !is_fine(one) && !is_fine(one ^ a ^ b) && is_fine(one ^ a) && is_fine(one ^ b))
-    })
-}
-
-/// Samples that have nothing to do with each other: every pattern at every seam, closed, and a manifold but for what is known.
+/// Samples that have nothing to do with each other: every pattern at every seam, closed, and a manifold.
 #[test]
 fn seams_of_cubes_are_closed_whatever_the_samples() {
     for (f, faces) in FACES.into_iter().enumerate() {
-        for width in [0.0, 0.25] {
-            let method = cubes(faces, Diagonals::Fan);
-            let mut extractor = extractor(0.5, &method, width);
-            let mut triangles = 0;
-            for fine in (0..256).step_by(if f == 0 { 1 } else { 3 }) {
-                let field = noise(fine + 256 * f as u32, 1e6, 3.4);
+        let method = cubes(faces, Diagonals::Fan);
+        let mut extractor = extractor(0.5, &method);
+        let mut triangles = 0;
+        for fine in (0..256).step_by(if f == 0 { 1 } else { 3 }) {
+            for round in 0..2 {
+                let field = noise(fine + 256 * (f as u32 + 4 * round), 1e6, 3.4);
                 let chunks = chunks(&mut extractor, &field, fine, CELLS);
                 let report = welded(&chunks);
-                let faults = [report.boundary_edges, report.misoriented_edges, report.collapsed_triangles];
-                assert_eq!(faults, [0; 3], "{faces:?} {width} {fine:08b}: {report:?}");
-                let is_known = meet_in_an_edge(fine) && report.non_manifold_edges > 0;
-                assert!(is_known || report.is_closed_manifold(), "{faces:?} {width} {fine:08b}: {report:?}");
-                assert_eq!(open_edges(&by_position(&chunks)), 0, "{faces:?} {width} {fine:08b}");
+                let faults = [report.misoriented_edges, report.collapsed_triangles, report.unused_vertices];
+                assert!(faults == [0; 3] && report.is_closed_manifold(), "{faces:?} {fine:08b}: {report:?}");
+                assert_eq!(open_edges(&by_position(&chunks)), 0, "{faces:?} {fine:08b}");
                 triangles += chunks.iter().map(|chunk| chunk.seam).sum::<u32>();
             }
-            assert!(triangles > 20_000, "{triangles}");
         }
+        assert!(triangles > 20_000, "{triangles}");
     }
 }
 
@@ -69,7 +57,7 @@ fn seams_of_cubes_are_closed_whatever_the_samples() {
 fn seams_of_odd_samples_are_closed() {
     for faces in FACES {
         let method = cubes(faces, Diagonals::Quality);
-        let mut extractor = extractor(0.5, &method, 0.25);
+        let mut extractor = extractor(0.5, &method);
         for fine in (0..256).step_by(5) {
             let few = noise(fine, 20.0, 3.4);
             let odd = from_fn(|p| match few.sample(p) {
@@ -86,47 +74,26 @@ fn seams_of_odd_samples_are_closed() {
     }
 }
 
-/// One side, two sides, three sides fine, and every other way: the same surface as at one level. Without a width up to half the
-/// triangles of seams face the inside; with one a fiftieth at most, and only where a vertex has no room to go along the surface: where that is nearly
-/// parallel to the side, where two sides meet, and at an edge of the object.
+/// One side, two sides, three sides fine, and every other way: the same surface as at one level, and nothing turned over.
 #[test]
 fn shapes_keep_their_topology_in_all_256_ways() {
     let method = cubes(Faces::default(), Diagonals::Fan);
     for (s, shape) in shapes().iter().enumerate() {
-        for (width, step) in [(0.0, 5), (0.25, 1), (0.5, 3)] {
-            let mut extractor = extractor(0.125, &method, width);
-            let (mut turned, mut of_seams) = (0, 0);
-            for fine in (0..256).step_by(if s == 0 { step } else { 2 * step + 1 }) {
-                let chunks = chunks(&mut extractor, &*shape.field, fine, 10);
-                let report = welded(&chunks);
-                assert!(report.is_closed_manifold(), "{s} {width} {fine:08b}: {report:?}");
-                assert_eq!(report.euler_characteristic, shape.euler_characteristic, "{s} {width} {fine:08b}");
-                // Keys and bits say the same.
-                let seen = by_position(&chunks);
-                assert_eq!(open_edges(&seen), 0, "{s} {width} {fine:08b}");
-                assert_eq!(
-                    topology(&seen).euler_characteristic,
-                    shape.euler_characteristic,
-                    "{s} {fine:08b}"
-                );
-                let these = turned_over(&chunks, &*shape.field, 0.25);
-                turned += these.len();
-                of_seams += chunks.iter().map(|chunk| chunk.seam as usize).sum::<usize>();
-                let may_be = |one: &Turned| {
-                    let has_no_room = shape.turns_at == NEARLY_FLAT && (one.at_sides || one.at_crease);
-                    has_no_room || one.along_axis >= shape.turns_at
-                };
-                let is_known = width == 0.0 || these.iter().all(may_be);
-                assert!(is_known, "{s} {width} {fine:08b}: {these:?}");
-            }
-            // Without a width the first ball alone is asked: the second is square on the sides, where triangles face neither way.
-            let is_as_said = match (width, s) {
-                (0.0, 0) => turned > of_seams * 2 / 5,
-                (0.0, _) => true,
-                _ => turned <= of_seams / 50,
-            };
-            assert!(is_as_said, "{s} {width}: {turned} of {of_seams}");
+        let mut extractor = extractor(0.125, &method);
+        let mut of_seams = 0;
+        for fine in (0..256).step_by(if s == 0 { 1 } else { 3 }) {
+            let chunks = chunks(&mut extractor, &*shape.field, fine, 10);
+            let report = welded(&chunks);
+            assert!(report.is_closed_manifold(), "{s} {fine:08b}: {report:?}");
+            assert_eq!(report.euler_characteristic, shape.euler_characteristic, "{s} {fine:08b}");
+            // Keys and bits say the same.
+            let seen = by_position(&chunks);
+            assert_eq!(open_edges(&seen), 0, "{s} {fine:08b}");
+            assert_eq!(topology(&seen).euler_characteristic, shape.euler_characteristic, "{s} {fine:08b}");
+            assert_eq!(turned_over(&chunks, &*shape.field), 0, "{s} {fine:08b}");
+            of_seams += chunks.iter().map(|chunk| chunk.seam).sum::<u32>();
         }
+        assert!(of_seams > 10_000, "{s}: {of_seams}");
     }
 }
 
@@ -139,21 +106,20 @@ fn octrees_of_three_levels_are_closed() {
         met += usize::from((0..3).all(|level| octree.leaves.iter().any(|leaf| leaf.0 == level)));
         let of_cubes = cubes(FACES[seed as usize % 4], Diagonals::Fan);
         let moved = Method::Cubes(Cubes { placement: Placement::Relaxed, ..Cubes::default() });
-        let all = [(of_cubes, 0.0), (of_cubes, 0.3), (moved, 0.0), (moved, 0.2)];
-        for (method, width) in all.into_iter().take(if seed < 4 { 4 } else { 2 }) {
-            let mut extractor = extractor(0.25, &method, width);
+        for method in [of_cubes, moved].into_iter().take(if seed < 4 { 2 } else { 1 }) {
+            let mut extractor = extractor(0.25, &method);
             let reach = 4.0 * 0.25 * REACH as f32 - 1.1;
             let chunks = octree.chunks(&mut extractor, &noise(seed, 1e6, reach), 4);
             let mesh = weld_chunks(&chunks).unwrap();
             assert!(mesh.triangles.len() > 1_000);
-            assert_eq!(open_edges(&mesh), 0, "{seed} {method:?} {width}");
-            assert_eq!(topology(&mesh).boundary_edges, 0, "{seed} {method:?} {width}");
+            assert_eq!(open_edges(&mesh), 0, "{seed} {method:?}");
+            assert!(topology(&mesh).is_closed_manifold(), "{seed} {method:?}");
             let ball = ball(3.2, [0.2, 0.03, -0.3]);
             let chunks = octree.chunks(&mut extractor, &ball, 4);
             let report = welded(&chunks);
-            assert!(report.is_closed_manifold(), "{seed} {method:?} {width}: {report:?}");
-            assert_eq!(report.euler_characteristic, 2, "{seed} {method:?} {width}");
-            assert_eq!(open_edges(&by_position(&chunks)), 0, "{seed} {method:?} {width}");
+            assert!(report.is_closed_manifold(), "{seed} {method:?}: {report:?}");
+            assert_eq!(report.euler_characteristic, 2, "{seed} {method:?}");
+            assert_eq!(open_edges(&by_position(&chunks)), 0, "{seed} {method:?}");
         }
     }
     assert!(met > 20, "{met}");
@@ -165,8 +131,7 @@ fn a_chunk_among_its_own_level_is_that_of_the_grid() {
     let method = cubes(Faces::Trilinear, Diagonals::EdgeGroups);
     let settings = ChunkSettings::default().with_normals(Normals::Field).with_isovalue(0.1);
     let grid = Grid::try_new([3.0, -7.5, 1e3], 0.3).unwrap();
-    let settings_of_levels = LevelSettings::default().with_chunks(settings).with_width(0.5);
-    let mut levels = LevelExtractor::try_new(&grid, &method, &settings_of_levels).unwrap();
+    let mut levels = LevelExtractor::try_new(&grid, &method, &settings).unwrap();
     for level in 0..4 {
         let coarse = grid.coarser(level).unwrap();
         for (corner, same) in
@@ -197,8 +162,8 @@ fn neighbours_that_are_seen_alike_make_the_same_chunk() {
     let of_cubes = cubes(Faces::default(), Diagonals::Fan);
     let field = noise(5, 1e6, 9.0);
     let cells = CellBox { start: [-4; 3], end: [4; 3] };
-    for (method, width) in [(of_cubes, 0.0), (of_cubes, 0.25), (NETS, 0.0), (SMOOTHED, 0.0), (PLANES, 0.0)] {
-        let mut extractor = extractor(0.5, &method, width);
+    for method in [of_cubes, NETS, SMOOTHED, PLANES] {
+        let mut extractor = extractor(0.5, &method);
         let mut known: HashMap<Neighbours, Chunk> = HashMap::new();
         for seed in 0..300u32 {
             let hash = |i: u32| {
@@ -232,7 +197,7 @@ fn edits_beyond_a_chunk_and_its_seams_leave_it() {
     // Smoothing looks farther, so its holes are farther apart.
     let of_cubes = cubes(Faces::default(), Diagonals::Fan);
     for (method, apart) in [(of_cubes, 2.0), (NETS, 2.0), (SMOOTHED, 2.6)] {
-        let mut extractor = extractor(0.5, &method, 0.25);
+        let mut extractor = extractor(0.5, &method);
         let level_at = |[x, y, z]: [i32; 3]| {
             if x < 0 {
                 2
@@ -268,20 +233,15 @@ fn edits_beyond_a_chunk_and_its_seams_leave_it() {
 #[test]
 fn what_cannot_be_done_is_an_error() {
     let grid = Grid::try_new([0.0; 3], 1.0).unwrap();
-    let of = |method: &Method, width: f32| {
-        LevelExtractor::try_new(&grid, method, &LevelSettings::default().with_width(width)).map(drop)
-    };
+    let of = |method: &Method| LevelExtractor::try_new(&grid, method, &ChunkSettings::default()).map(drop);
     let method = cubes(Faces::default(), Diagonals::Fan);
-    for width in [-0.1, 0.51, f32::NAN, f32::INFINITY] {
-        assert!(matches!(of(&method, width), Err(LevelError::Width { .. })), "{width}");
-    }
     let tetrahedra = Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred));
-    assert_eq!(of(&tetrahedra, 0.0), Err(LevelError::Method));
+    assert_eq!(of(&tetrahedra), Err(LevelError::Method));
     let steep = Neighbours::try_new(2, |d| if d == [0, 1, 0] { 0 } else { 2 });
     assert_eq!(steep, Err(LevelError::Step { direction: [0, 1, 0], levels: [2, 0] }));
     assert!(Neighbours::try_new(2, |d| if d == [1, 1, 1] { 0 } else { 2 }).is_ok());
 
-    let mut extractor = extractor(1.0, &method, 0.0);
+    let mut extractor = extractor(1.0, &method);
     let field = noise(0, 9.0, 9.0);
     let cells = CellBox { start: [0; 3], end: [4; 3] };
     let finer = Neighbours::try_new(1, |_| 0).unwrap();
@@ -295,7 +255,7 @@ fn what_cannot_be_done_is_an_error() {
     assert_eq!(refused(Source::Field(&field), 99, cells), LevelError::Level { level: 99 });
     let empty = CellBox::default();
     assert!(matches!(refused(Source::Field(&field), 1, empty), LevelError::Chunk(ChunkError::Cells { .. })));
-    let mut nets = LevelExtractor::try_new(&grid, &NETS, &LevelSettings::default()).unwrap();
+    let mut nets = LevelExtractor::try_new(&grid, &NETS, &ChunkSettings::default()).unwrap();
     let coarser = Neighbours::try_new(1, |_| 2).unwrap();
     let odd = CellBox { start: [1, 0, 0], ..cells };
     assert_eq!(
@@ -303,14 +263,14 @@ fn what_cannot_be_done_is_an_error() {
         Err(LevelError::Odd { cells: odd })
     );
     let patches = Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0, edge_clamp: 0.0 });
-    assert_eq!(of(&patches, 0.0), Err(LevelError::Method));
+    assert_eq!(of(&patches), Err(LevelError::Method));
     let wrong = Method::DualContouring(DualContouring { truncation: f32::NAN, ..DualContouring::default() });
-    assert!(matches!(of(&wrong, 0.0), Err(LevelError::Chunk(ChunkError::Settings(_)))));
+    assert!(matches!(of(&wrong), Err(LevelError::Chunk(ChunkError::Settings(_)))));
     // Twice the numbers are beyond i32.
     let far = CellBox { start: [i32::MAX - 5000, 0, 0], end: [i32::MAX - 4990, 4, 4] };
     let error = extractor.extract(&field, 1, far, &finer, Control::default()).unwrap_err();
     assert!(matches!(error, LevelError::Chunk(ChunkError::Cells { .. })), "{error}");
-    let other = LevelExtractor::try_new(&grid, &method, &LevelSettings::default().with_width(0.5))
+    let other = LevelExtractor::try_new(&grid, &method, &ChunkSettings::default().with_isovalue(0.5))
         .unwrap()
         .extract(&field, 1, cells, &finer, Control::default())
         .unwrap();
@@ -319,25 +279,23 @@ fn what_cannot_be_done_is_an_error() {
     assert!(matches!(weld_chunks([&one, &one]), Err(WeldError::Overlap { .. })));
 }
 
-/// Standing back from a finer neighbour, vertices go along the surface: they are as near to it as without.
+/// Vertices of seams are those of one of the levels, and others as near to the surface.
 #[test]
-fn a_width_makes_no_ditch() {
+fn vertices_of_seams_are_near_the_surface() {
     let method = cubes(Faces::default(), Diagonals::Fan);
     let field = ball(1.52, [0.03, -0.11, 0.07]);
-    let farthest = |width: f32, fine: u32| {
-        let chunks = chunks(&mut extractor(0.125, &method, width), &field, fine, 10);
-        let positions = chunks.iter().flat_map(|chunk| &chunk.positions);
-        positions.map(|&p| field.sample(p).abs()).fold(0.0, f32::max)
-    };
-    for fine in [2, 3, 85, 90, 128, 200, 254] {
-        // A step of h ends h^2 / 2 r above a ball of radius r. With 0.25 cells of 0.25 along all three axes that is 0.0039.
-        assert!(farthest(0.25, fine) < farthest(0.0, fine) + 0.004, "{fine:08b}");
-        assert!(farthest(0.5, fine) < farthest(0.0, fine) + 0.016, "{fine:08b}");
+    for fine in (0..256).step_by(5) {
+        let chunks = chunks(&mut extractor(0.125, &method), &field, fine, 10);
+        for chunk in &chunks {
+            // The middle of a chord of h is h^2 / 8 r below a ball of radius r. With cells of 0.25 that is 0.0051.
+            assert!(chunk.positions.iter().all(|&p| field.sample(p).abs() < 0.0052), "{fine:08b}");
+        }
     }
 }
 
-/// Triangles and open edges by the crate transvoxel 2.0.0 of eight blocks of side 8, those in the west with 8 cells a side and those in the
-/// east with 16: without transition cells, and with them.
+/// Triangles by the crate transvoxel 2.0.0 of eight blocks of side 8, those in the west with 8 cells a side and those in the east with 16:
+/// without transition cells, and with them. Its transition cells have the crossings of both levels, and thus two triangles more for each
+/// coarse crossing between the levels, which are counted here from the field.
 #[test]
 fn counts_are_those_of_another_program() {
     let sphere = |[x, y, z]: [f32; 3]| 5.03 - Vec3::new(x, y, z).length();
@@ -346,16 +304,29 @@ fn counts_are_those_of_another_program() {
     };
     let (sphere, bumpy) = (from_fn(sphere), from_fn(bumpy));
     let method = cubes(Faces::default(), Diagonals::Fan);
-    let mut extractor = extractor(0.5, &method, 0.0);
+    let mut extractor = extractor(0.5, &method);
     for (field, without, with) in [(&sphere as &dyn ScalarField, 2_432, 2_560), (&bumpy, 2_896, 3_024)] {
+        let is_inside = |y: i32, z: i32| field.sample([0.0, y as f32, z as f32]) > 0.0;
+        let crossings = |[dy, dz]: [i32; 2]| {
+            let all = (-8..8).flat_map(|y| (-8..8).map(move |z| [y, z]));
+            all.filter(|&[y, z]| is_inside(y, z) != is_inside(y + dy, z + dz)).count()
+        };
+        let coarse = crossings([0, 1]) + crossings([1, 0]);
         let chunks = chunks(&mut extractor, field, 0b1010_1010, 8);
         let all: usize = chunks.iter().map(|chunk| chunk.triangles.len()).sum();
-        let seams: usize = chunks.iter().map(|chunk| chunk.seam as usize).sum();
-        assert_eq!([all - seams, all], [without, with]);
+        let mut alone = 0;
+        for chunk in &chunks {
+            let same = Neighbours::SAME;
+            let chunk =
+                extractor.extract(field, chunk.level, chunk.cells, &same, Control::default()).unwrap();
+            assert_eq!(chunk.seam, 0);
+            alone += chunk.triangles.len();
+        }
+        assert_eq!([alone, all + 2 * coarse], [without, with]);
         let mut apart = chunks;
         for chunk in &mut apart {
             chunk.triangles.truncate(chunk.triangles.len() - chunk.seam as usize);
         }
-        assert_eq!(open_edges(&by_position(&apart)), 128);
+        assert!(open_edges(&by_position(&apart)) > 0);
     }
 }

@@ -2,8 +2,8 @@
 //! right shape.
 
 use crate::two_levels::{
-    CELLS, NEVER, Octree, REACH, ball, by_position, chunks, extractor, noise, open_edges, shapes,
-    turned_over, welded,
+    CELLS, Octree, REACH, ball, by_position, chunks, extractor, noise, open_edges, shapes, turned_over,
+    welded,
 };
 use isostudy_extract::{DualContouring, Method, SurfaceNets, weld_chunks};
 use isostudy_mesh::topology::topology;
@@ -29,7 +29,7 @@ const STEPS: [usize; 4] = [1, 7, 3, 7];
 #[test]
 fn seams_of_duals_are_closed_whatever_the_samples() {
     for (method, step) in DUALS.into_iter().zip(STEPS) {
-        let mut extractor = extractor(0.5, &method, 0.0);
+        let mut extractor = extractor(0.5, &method);
         let mut triangles = 0;
         for fine in (0..256).step_by(step) {
             let field = noise(fine, 1e6, 3.4);
@@ -47,7 +47,7 @@ fn seams_of_duals_are_closed_whatever_the_samples() {
 fn shapes_of_duals_keep_their_topology_in_all_256_ways() {
     for (method, step) in DUALS.into_iter().zip(STEPS) {
         let is_free = matches!(method, Method::DualContouring(planes) if !planes.in_cell);
-        let mut extractor = extractor(0.125, &method, 0.0);
+        let mut extractor = extractor(0.125, &method);
         for (s, shape) in shapes().iter().enumerate() {
             let (mut turned, mut all) = (0, 0);
             for fine in (0..256).step_by(if s == 0 { step } else { 7 * step }) {
@@ -60,13 +60,13 @@ fn shapes_of_duals_keep_their_topology_in_all_256_ways() {
                     "{method:?} {s} {fine:08b}"
                 );
                 // Sheets near each other, and a saddle on a face, may share a cell's vertex.
-                if shape.turns_at == NEVER {
+                if shape.is_round {
                     assert!(report.is_closed_manifold(), "{method:?} {s} {fine:08b}: {report:?}");
                 }
-                turned += turned_over(&chunks, &*shape.field, 0.25).len();
+                turned += turned_over(&chunks, &*shape.field);
                 all += chunks.iter().map(|chunk| chunk.triangles.len()).sum::<usize>();
             }
-            let most = match (is_free, shape.turns_at == NEVER) {
+            let most = match (is_free, shape.is_round) {
                 (false, true) => 0,
                 (false, false) => all / 1_000,
                 (true, true) => all / 500,
@@ -83,7 +83,7 @@ fn octrees_of_three_levels_are_closed() {
     for seed in 0..6 {
         let octree = Octree::random(seed);
         for method in DUALS {
-            let mut extractor = extractor(0.25, &method, 0.0);
+            let mut extractor = extractor(0.25, &method);
             let reach = 4.0 * 0.25 * REACH as f32 - 1.1;
             let chunks = octree.chunks(&mut extractor, &noise(seed, 1e6, reach), 4);
             let mesh = weld_chunks(&chunks).unwrap();

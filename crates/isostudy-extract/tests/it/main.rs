@@ -34,6 +34,8 @@ mod odd_input;
 mod open_meshes;
 mod placement;
 mod published;
+mod seam_survey;
+mod seams;
 mod sharp_edges;
 mod snap;
 mod sphere;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 use isostudy_extract::{
-    CellBox, Chunk, Control, Grid, LevelExtractor, LevelSettings, Method, Neighbours, ScalarField, from_fn,
+    CellBox, Chunk, ChunkSettings, Control, Grid, LevelExtractor, Method, Neighbours, ScalarField, from_fn,
     weld_chunks,
 };
 use isostudy_mesh::TriangleMesh;
@@ -13,9 +13,9 @@ use isostudy_mesh::topology::{TopologyReport, topology};
 /// Cells along a side of a coarse chunk.
 pub(crate) const CELLS: i32 = 4;
 
-pub(crate) fn extractor(spacing: f64, method: &Method, width: f32) -> LevelExtractor {
+pub(crate) fn extractor(spacing: f64, method: &Method) -> LevelExtractor {
     let grid = Grid::try_new([0.0; 3], spacing).unwrap();
-    LevelExtractor::try_new(&grid, method, &LevelSettings::default().with_width(width)).unwrap()
+    LevelExtractor::try_new(&grid, method, &ChunkSettings::default()).unwrap()
 }
 
 /// The eight chunks round the origin: one bit an octant, x fastest, says which of them are fine.
@@ -98,25 +98,8 @@ pub(crate) fn noise(seed: u32, levels: f32, reach: f32) -> impl ScalarField {
     })
 }
 
-/// A triangle that faces the inside, as the field's slope at its middle has it.
-#[derive(Debug)]
-pub(crate) struct Turned {
-    /// How much of the slope is along one axis: 1 where the surface is parallel to sides of chunks.
-    pub(crate) along_axis: f32,
-    /// Whether a corner is near two sides of chunks, at the edge in which they meet.
-    pub(crate) at_sides: bool,
-    /// Whether slopes at its corners differ: an edge of the object is near.
-    pub(crate) at_crease: bool,
-}
-
-/// How far from a side is near, in cells of the coarse level: as far as vertices go from it at most.
-const NEAR: f32 = 0.5;
-/// The least cosine between slopes at corners of a triangle where the surface is smooth.
-const SMOOTH: f32 = 0.9;
-
-/// The triangles of chunks round the origin that face the inside. Cells of the coarse level have edges of
-/// `cell`.
-pub(crate) fn turned_over(chunks: &[Chunk], field: &dyn ScalarField, cell: f32) -> Vec<Turned> {
+/// How many triangles face the inside, as the field's slope at their middles has it.
+pub(crate) fn turned_over(chunks: &[Chunk], field: &dyn ScalarField) -> usize {
     let slope = |p: Vec3| {
         let along = |axis: Vec3| {
             let value = |way: f32| field.sample((p + axis * way).to_array());
@@ -124,23 +107,13 @@ pub(crate) fn turned_over(chunks: &[Chunk], field: &dyn ScalarField, cell: f32) 
         };
         Vec3::from_array(Vec3::AXES.map(along))
     };
-    let is_at_sides = |p: &Vec3| p.to_array().iter().filter(|c| c.abs() <= NEAR * cell).count() > 1;
-    let turned = |chunk: &Chunk, triangle: &[u32; 3]| {
-        let corners = triangle.map(|v| Vec3::from(chunk.positions[v as usize]));
-        let [a, b, c] = corners;
-        let (normal, middle) = ((b - a).cross(c - a), slope((a + b + c) / 3.0));
+    let is_turned = |chunk: &Chunk, triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|v| Vec3::from(chunk.positions[v as usize]));
         // A triangle without area faces nowhere.
-        (normal.dot(middle) > 1e-9).then(|| {
-            let [at_a, at_b, at_c] = corners.map(|p| slope(p).normalize());
-            let agreement = at_a.dot(at_b).min(at_b.dot(at_c)).min(at_c.dot(at_a));
-            Turned {
-                along_axis: middle.normalize().abs().max_element(),
-                at_sides: corners.iter().any(is_at_sides),
-                at_crease: agreement < SMOOTH,
-            }
-        })
+        (b - a).cross(c - a).dot(slope((a + b + c) / 3.0)) > 1e-9
     };
-    chunks.iter().flat_map(|chunk| chunk.triangles.iter().filter_map(move |t| turned(chunk, t))).collect()
+    let turned = |chunk: &Chunk| chunk.triangles.iter().filter(|triangle| is_turned(chunk, triangle)).count();
+    chunks.iter().map(turned).sum()
 }
 
 pub(crate) fn ball(radius: f32, centre: [f32; 3]) -> impl ScalarField {
@@ -151,22 +124,15 @@ pub(crate) fn ball(radius: f32, centre: [f32; 3]) -> impl ScalarField {
 pub(crate) struct Shape {
     pub(crate) field: Box<dyn ScalarField>,
     pub(crate) euler_characteristic: i64,
-    /// How much of the slope must be along one axis where a triangle may be turned over.
-    pub(crate) turns_at: f32,
+    /// Whether it is a ball, or nearly one.
+    pub(crate) is_round: bool,
 }
 
-/// There is no such place; where the surface is within 26 degrees of a side; where it is within 32, and
-/// besides at edges of chunks and of the object. So near a side the coarse surface is as far from the fine
-/// one, measured in the side, as the transition is wide.
-pub(crate) const NEVER: f32 = 2.0;
-const FLAT: f32 = 0.9;
-pub(crate) const NEARLY_FLAT: f32 = 0.85;
-
 pub(crate) fn shapes() -> Vec<Shape> {
-    let shape = |field: Box<dyn ScalarField>, euler_characteristic, turns_at| Shape {
+    let shape = |field: Box<dyn ScalarField>, euler_characteristic, is_round| Shape {
         field,
         euler_characteristic,
-        turns_at,
+        is_round,
     };
     let torus = from_fn(|[x, y, z]: [f32; 3]| {
         let [x, y, z] = [x + 0.05, 0.8 * y + 0.6 * z - 0.02, 0.8 * z - 0.6 * y + 0.03];
@@ -185,13 +151,13 @@ pub(crate) fn shapes() -> Vec<Shape> {
     let gyroid = from_fn(move |p| 0.4 * wall(p, 2.4) + 0.1 - (Vec3::from(p).length() / 1.95).powi(6));
     let bumps = from_fn(move |p| 1.7 - Vec3::from(p).length() + 0.2 * wall(p, 2.0));
     vec![
-        shape(Box::new(ball(1.52, [0.03, -0.11, 0.07])), 2, NEVER),
-        shape(Box::new(ball(1.5, [0.0; 3])), 2, NEVER),
-        shape(Box::new(ball(1.3, [0.4, -0.2, 0.1])), 2, NEVER),
-        shape(Box::new(torus), 0, FLAT),
-        shape(Box::new(hills), 2, NEARLY_FLAT),
-        shape(Box::new(gyroid), -2, NEARLY_FLAT),
-        shape(Box::new(bumps), 2, NEVER),
+        shape(Box::new(ball(1.52, [0.03, -0.11, 0.07])), 2, true),
+        shape(Box::new(ball(1.5, [0.0; 3])), 2, true),
+        shape(Box::new(ball(1.3, [0.4, -0.2, 0.1])), 2, true),
+        shape(Box::new(torus), 0, false),
+        shape(Box::new(hills), 2, false),
+        shape(Box::new(gyroid), -2, false),
+        shape(Box::new(bumps), 2, true),
     ]
 }
 

@@ -31,8 +31,22 @@ impl Ranges {
         Ok(Self(levels))
     }
 
-    /// What they take.
-    pub(super) fn bytes(&self) -> usize {
+    /// What those of so many samples take.
+    pub(super) fn bytes(counts: [usize; 3]) -> u64 {
+        let mut bricks = bricks_over(counts);
+        let mut all = 0;
+        loop {
+            all += bricks.iter().map(|&n| n as u64).product::<u64>();
+            if bricks == [1; 3] {
+                return all * size_of::<Range>() as u64;
+            }
+            bricks = halved(bricks);
+        }
+    }
+
+    /// What these take.
+    #[cfg(test)]
+    pub(super) fn held(&self) -> usize {
         self.0.iter().map(|level| size_of::<Range>() * level.bricks.capacity()).sum()
     }
 
@@ -58,14 +72,23 @@ impl Ranges {
     }
 }
 
+/// The smallest bricks over so many samples.
+fn bricks_over(counts: [usize; 3]) -> [usize; 3] {
+    counts.map(|n| n.saturating_sub(1).div_ceil(BRICK).max(1))
+}
+
+fn halved(bricks: [usize; 3]) -> [usize; 3] {
+    bricks.map(|n| n.div_ceil(2))
+}
+
 impl Level {
     fn of(counts: [usize; 3], values: &[f32]) -> Result<Self, TryReserveError> {
         let of_samples = |at: usize| if values[at].abs() <= LARGEST { [values[at]; 2] } else { UNKNOWN };
-        Self::over(counts, counts.map(|n| (n - 1).div_ceil(BRICK).max(1)), BRICK, BRICK + 1, of_samples)
+        Self::over(counts, bricks_over(counts), BRICK, BRICK + 1, of_samples)
     }
 
     fn halved(&self) -> Result<Self, TryReserveError> {
-        Self::over(self.counts, self.counts.map(|n| n.div_ceil(2)), 2, 2, |at| self.bricks[at])
+        Self::over(self.counts, halved(self.counts), 2, 2, |at| self.bricks[at])
     }
 
     /// Bricks over a grid of ranges, `wide` of them along each edge, `apart` from brick to brick.

@@ -1,11 +1,11 @@
 //! A study that work can begin on.
 
-use crate::{answer_files, fields, input, prepare, recipe};
+use crate::{answer_files, fields, input, prepare, recipe, work_time};
 use anyhow::Result;
 use isostudy_design::Study;
 use std::path::Path;
 
-/// Reads and checks a study and everything it names: lattices and memory, mesh files, answers.
+/// Reads and checks a study and everything it names: lattices, memory and time, mesh files, answers.
 ///
 /// # Errors
 /// If something in it is wrong, or not there.
@@ -14,6 +14,7 @@ pub(super) fn load(path: &Path) -> Result<Study> {
     recipe::check(&study)?;
     prepare::check(&study, isostudy_bench::read_machine().memory_bytes)?;
     fields::check(&study)?;
+    work_time::check(&study)?;
     if let Some(reading) =
         answer_files::of_study(&study)?.filter(|reading| !reading.report.remarks.is_empty())
     {

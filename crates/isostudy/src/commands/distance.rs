@@ -3,6 +3,7 @@
 use super::object_of_study::object_of_study;
 use super::source_arguments::SourceArguments;
 use crate::fields::Fields;
+use crate::memory::OfVolume;
 use crate::outcome::Outcome;
 use crate::terminal::{say, significant};
 use crate::{input, mesh_file, prepare};
@@ -109,14 +110,16 @@ fn to_object(arguments: &Arguments, a: &Surface, id: &str, sampling: &Sampling) 
     let grid = prepare::grid(object, spacing);
     let fields = Fields::new(&study);
     let made = fields.get(index)?;
-    to_isosurface(arguments, a, (&*made.field, 0), made.isovalue, &grid, sampling)
+    to_isosurface(arguments, a, (&*made.field, None), made.isovalue, &grid, sampling)
         .with_context(|| format!("{} and {id}, with spacing {spacing}", arguments.a.display()))
 }
 
 /// Against the isosurface of a formula, a volume or a mesh's distance, in its box.
 fn to_source(arguments: &Arguments, a: &Surface, sampling: &Sampling) -> Result<(String, Metro)> {
-    let source = arguments.source.read()?.context("something to compare with is needed")?;
-    let field: (&dyn StudyField, u64) = (&*source.field, source.held);
+    let (method, execution) = (lattice(), Execution { threads: arguments.threads as usize });
+    let source =
+        arguments.source.read_for(&method, &execution)?.context("something to compare with is needed")?;
+    let field: (&dyn StudyField, Option<OfVolume>) = (&*source.field, source.held);
     let metro = to_isosurface(arguments, a, field, source.isovalue, &source.grid(), sampling)
         .with_context(|| format!("{} and {}", arguments.a.display(), source.name))?;
     Ok((source.name, metro))
@@ -126,17 +129,19 @@ fn to_source(arguments: &Arguments, a: &Surface, sampling: &Sampling) -> Result<
 fn to_isosurface(
     arguments: &Arguments,
     a: &Surface,
-    (field, held): (&dyn StudyField, u64),
+    (field, held): (&dyn StudyField, Option<OfVolume>),
     isovalue: f32,
     grid: &BoxGrid,
     sampling: &Sampling,
 ) -> Result<Metro> {
     let execution = Execution { threads: arguments.threads as usize };
-    let limit = arguments.source.limit();
-    // The isosurface is looked for on such a lattice.
-    let method = Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred));
-    prepare::check_limit(&method, grid, &execution, held, limit)?;
+    arguments.source.limit().check_method(&lattice(), grid, &execution, held)?;
     Ok(isostudy_extract::distances(a, field, isovalue, grid, sampling, &execution)?)
+}
+
+/// The isosurface is looked for on such a lattice.
+fn lattice() -> Method {
+    Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred))
 }
 
 fn surface(path: &Path) -> Result<Surface> {

@@ -10,12 +10,13 @@ use super::named::named;
 use super::source_arguments::SourceArguments;
 use super::study_run::{Run, Selection, with_selection};
 use super::turntable::crease;
+use crate::memory::Held;
 use crate::outcome::Outcome;
 use crate::place::place;
 use crate::source::Source;
 use crate::store::{write_whole, write_whole_by};
 use crate::terminal::{counted, grouped, say};
-use crate::{input, mesh_file, prepare, records};
+use crate::{input, mesh_file, records};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
 use isostudy_design::record::Counts;
@@ -197,6 +198,13 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if let Some(path) = &arguments.picture {
         write_whole(path, &picture(&extraction.mesh, arguments.crease_deg)?)?;
     }
+    if let (Cells::Own { is_turned: true, .. }, Some(found)) = (&cells, open_edges(&extraction.mesh)) {
+        let name = &source.name;
+        tell!(
+            "{name}: the grid is turned against the axes, and this method extracts on the volume's own cells. So the surface is open \
+             where it leaves them ({found}). --close closes it"
+        );
+    }
     // The report has it.
     if !arguments.json {
         tell_made(out, extraction.counts.triangles, extraction.counts.vertices, extraction.times.total());
@@ -237,17 +245,20 @@ fn on_a_grid(
     method: &Method,
     execution: &Execution,
 ) -> Result<(Extraction, Source, Cells, Counts)> {
-    let source =
-        arguments.source.read()?.context("one of a study, --field, --volume and --mesh is needed")?;
+    let before = Held::now();
+    let source = arguments
+        .source
+        .read_for(method, execution)?
+        .context("one of a study, --field, --volume and --mesh is needed")?;
     let grid = source.grid();
-    prepare::check_seeds(method, &grid)?;
-    prepare::check_limit(method, &grid, execution, source.held, arguments.source.limit())
-        .with_context(|| source.place())?;
+    let limit = arguments.source.limit();
+    limit.check_method(method, &grid, execution, source.held).with_context(|| source.place())?;
     let mut kept = FieldCache::default();
     let field = Counted::new(&*source.field, &mut kept);
     let study: &dyn StudyField = &field;
-    let extraction =
-        method.extract(&mut Extractor::new(), study.into(), &grid, source.isovalue, execution)?;
+    let extract =
+        || Ok(method.extract(&mut Extractor::new(), study.into(), &grid, source.isovalue, execution)?);
+    let extraction = limit.hold(before, extract)?;
     let counts = records::with_calls(records::counts(&extraction.counts), &field);
     Ok((extraction, source, Cells::Cubes(method.cells(&grid)?), counts))
 }

@@ -134,7 +134,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let execution = Execution { threads: arguments.threads as usize };
     let machine = machine::read();
     if let Recipe::Extractor(method) = &prepared.recipe {
-        prepare::check_memory(&study, method, &prepared.grid, &execution, machine.memory_bytes)
+        let object = configuration.object;
+        prepare::check_memory(&study, object, method, &prepared.grid, &execution, machine.memory_bytes)
             .with_context(|| format!("{id} with spacing {spacing}"))?;
     }
     let Made { mesh, counts, .. } =

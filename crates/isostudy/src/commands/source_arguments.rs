@@ -5,6 +5,7 @@ use crate::source::{Inside, Options, Source};
 use anyhow::{Context, Result};
 use clap::Args;
 use glam::Vec3;
+use isostudy_extract::{Execution, Method};
 use isostudy_mesh::Bounds;
 use std::path::{Path, PathBuf};
 
@@ -42,7 +43,7 @@ pub(crate) struct SourceArguments {
     /// Take a mesh with holes: inside is what is seen from behind in most directions
     #[arg(long, conflicts_with_all = ["field", "volume"])]
     allow_open: bool,
-    /// Most memory for a volume's samples and for the lattice; the mesh comes on top. Such as 500MB or 16GiB
+    /// Most memory for a volume's samples, the lattice, and the mesh with what finishing it takes. Such as 500MB or 16GiB
     #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::size)]
     memory: u64,
 }
@@ -79,6 +80,7 @@ impl SourceArguments {
             close: self.close,
             allow_open: self.allow_open,
             limit: self.limit(),
+            method: None,
         }
     }
 
@@ -87,7 +89,18 @@ impl SourceArguments {
     /// # Errors
     /// If it cannot be read or has no inside.
     pub(super) fn read(&self) -> Result<Option<Source>> {
-        let options = self.options();
+        self.read_by(self.options())
+    }
+
+    /// The same for a mesh by a method. What does not fit into memory with it is refused before samples are read.
+    ///
+    /// # Errors
+    /// The same, and if it does not fit.
+    pub(super) fn read_for(&self, method: &Method, execution: &Execution) -> Result<Option<Source>> {
+        self.read_by(Options { method: Some((*method, *execution)), ..self.options() })
+    }
+
+    fn read_by(&self, options: Options) -> Result<Option<Source>> {
         if let Some(formula) = &self.field {
             let bounds = self.bounds.context("--bounds is needed")?;
             return options.of_formula(formula, bounds, "--field").map(Some);

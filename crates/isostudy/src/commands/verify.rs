@@ -1,6 +1,6 @@
 //! `isostudy verify`: whether a mesh has the topology of a volume's level set.
 
-use crate::memory::{self, Limit};
+use crate::memory::{self, Limit, Needs, OfVolume};
 use crate::mesh_file;
 use crate::outcome::Outcome;
 use crate::terminal::say;
@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
     /// Take vertices at the same coordinates for one, where triangles do not share theirs
     #[arg(long)]
     weld: bool,
-    /// Most memory for the volume's samples. Such as 500MB or 16GiB
+    /// Most memory for the volume's samples and what is kept beside each. Such as 500MB or 16GiB
     #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::size)]
     memory: u64,
     /// Print JSON instead
@@ -77,9 +77,14 @@ struct Report<'a> {
 /// # Errors
 /// If mesh or volume cannot be read, or a sample is infinite or not a number.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    // Of the samples' size a header tells, before the mesh is read.
+    let unread = isostudy_volume::open(&arguments.volume)?;
+    let held = OfVolume::samples(&unread).with("the numbers of their edges", unread.memory_bytes());
+    let limit = Limit::of(arguments.memory);
+    limit.check(&Needs::of(Some(held))).with_context(|| arguments.volume.display().to_string())?;
     let mesh = mesh_file::read(&arguments.mesh)?;
     let mesh = if arguments.weld { weld(&mesh) } else { mesh };
-    let volume = Limit::of(arguments.memory).read(&arguments.volume)?;
+    let volume = limit.read(unread, held)?;
     let verdict = || -> Result<Verdict> {
         let samples = Samples::try_new(volume.counts, &volume.values)?;
         Ok(verify(&mesh, &samples, arguments.isovalue, arguments.ties.into())?)

@@ -161,8 +161,15 @@ impl Pipeline<'_> {
         if let Recipe::Extractor(method) = &prepared.recipe {
             let execution = Execution { threads: self.threads };
             let machine = isostudy_bench::read_machine().memory_bytes;
-            prepare::check_memory(self.study, method, &prepared.grid, &execution, machine)
-                .with_context(|| format!("{} with spacing {:?}", configuration.id, prepared.grid.spacing))?;
+            prepare::check_memory(
+                self.study,
+                configuration.object,
+                method,
+                &prepared.grid,
+                &execution,
+                machine,
+            )
+            .with_context(|| format!("{} with spacing {:?}", configuration.id, prepared.grid.spacing))?;
         }
         if budget.quantity == Quantity::Time {
             let mut seconds = Vec::new();

@@ -309,7 +309,7 @@ fn levels_weld_to_a_closed_mesh(made: &Made) -> Result<(), Broken> {
     // Some room beside.
     let spacing = 0.55 * bounds.size().max_element() / (2 * COARSE) as f32;
     let field = from_fn(|p| isostudy_extract::StudyField::sample(&volume, Vec3::from(p) + centre) - isovalue);
-    let mut extractor = extractor(f64::from(spacing), made.method, 0.0);
+    let mut extractor = extractor(f64::from(spacing), made.method);
     let parts = chunks(&mut extractor, &field, made.volume.fine, COARSE);
     let welded = weld_chunks(&parts).map_err(|e| Broken::of_field(e.to_string()))?;
     match open_edges(&welded) {

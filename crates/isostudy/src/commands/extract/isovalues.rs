@@ -2,15 +2,18 @@
 
 use super::super::source_arguments::finite;
 use super::{Arguments, open_edges};
+use crate::memory::{Held, OfVolume};
 use crate::outcome::Outcome;
 use crate::source::{Inside, Options, values_of_samples};
 use crate::store::write_whole_by;
 use crate::terminal::{counted, say};
-use crate::{input, mesh_file, prepare, seeds};
+use crate::{input, mesh_file, seeds};
 use anyhow::{Context, Result, bail};
+use isostudy_extract::active::{ActiveCells, Bricks};
 use isostudy_extract::{Execution, Extraction, Extractor, Method, VolumeCells};
 use isostudy_field::StudyField;
 use isostudy_mesh::MeshFormat;
+use isostudy_volume::Frame;
 use serde::Serialize;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -174,50 +177,53 @@ impl Sweep<'_> {
 
     fn on_own_cells(&self) -> Result<Swept> {
         let name = || self.path.display().to_string();
-        let limit = self.arguments.source.limit();
-        let mut volume = limit.read(self.path)?;
+        let (limit, before) = (self.arguments.source.limit(), Held::now());
+        let unread = isostudy_volume::open(self.path)?;
+        let Frame { counts, origin, steps, .. } = unread.frame();
+        let method = seeds::in_steps(&self.method, &unread.frame()).with_context(name)?;
+        let held = OfVolume::samples(&unread).with("the ranges of their bricks", Bricks::bytes_of(counts));
+        if counts.iter().all(|&n| n > 1) {
+            let grid = VolumeCells { counts, values: &[], origin, steps }.grid();
+            limit.check_method(&method, &grid, &self.execution, Some(held)).with_context(name)?;
+        }
+        let mut volume = limit.read(unread, held)?;
         let values = values_of_samples(&volume.values);
         let is_below = self.options(0.0).inside == Some(Inside::Below);
         // Inside is above for the extractor.
         if is_below {
             volume.values.iter_mut().for_each(|value| *value = -*value);
         }
-        let method = seeds::in_steps(&self.method, &volume).with_context(name)?;
-        let isostudy_volume::Volume { counts, values: samples, origin, steps } = &volume;
-        let cells = VolumeCells { counts: *counts, values: samples, origin: *origin, steps: *steps };
+        let cells = VolumeCells { counts, values: &volume.values, origin, steps };
         let began = Instant::now();
         let bricks = cells.bricks().with_context(name)?;
-        let ranges = Ranges {
-            build_s: began.elapsed().as_secs_f64(),
-            bytes: isostudy_extract::active::ActiveCells::bytes(&bricks),
-        };
-        let held = (size_of::<f32>() * samples.len() + ranges.bytes) as u64;
-        prepare::check_limit(&method, &cells.grid(), &self.execution, held, limit).with_context(name)?;
+        let ranges = Ranges { build_s: began.elapsed().as_secs_f64(), bytes: ActiveCells::bytes(&bricks) };
         let mut extractor = Extractor::new();
         let surfaces = self.isovalues.iter().map(|&isovalue| {
             let level = if is_below { -isovalue } else { isovalue };
-            let extraction =
-                cells.extract_by_bricks(&bricks, &method, &mut extractor, level, &self.execution);
-            self.files.keep(isovalue, &extraction.with_context(name)?, false)
+            let extract =
+                || Ok(cells.extract_by_bricks(&bricks, &method, &mut extractor, level, &self.execution)?);
+            let extraction = limit.hold(before, extract).with_context(name)?;
+            self.files.keep(isovalue, &extraction, false)
         });
         let surfaces = surfaces.collect::<Result<_>>()?;
         Ok((Some(ranges), surfaces, values))
     }
 
     fn on_a_grid(&self) -> Result<Swept> {
-        let read = self.options(0.0).read_volume(self.path)?;
+        let (before, asked) = (Held::now(), Some((self.method, self.execution)));
+        let read = Options { method: asked, ..self.options(0.0) }.read_volume(self.path)?;
         let mut extractor = Extractor::new();
         let mut values = String::new();
         let surfaces = self.isovalues.iter().map(|&isovalue| {
             let options = self.options(isovalue);
             let source = read.at(&options)?;
-            let (grid, limit) = (source.grid(), options.limit);
-            prepare::check_seeds(&self.method, &grid)?;
-            prepare::check_limit(&self.method, &grid, &self.execution, source.held, limit)
-                .with_context(|| source.place())?;
+            let grid = source.grid();
             let field: &dyn StudyField = &*source.field;
-            let extraction =
-                self.method.extract(&mut extractor, field.into(), &grid, source.isovalue, &self.execution)?;
+            let extract = || {
+                let level = source.isovalue;
+                Ok(self.method.extract(&mut extractor, field.into(), &grid, level, &self.execution)?)
+            };
+            let extraction = options.limit.hold(before, extract)?;
             source.values().clone_into(&mut values);
             self.files.keep(isovalue, &extraction, source.is_closed)
         });

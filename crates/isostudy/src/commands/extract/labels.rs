@@ -1,6 +1,7 @@
 //! The boundaries between labels, of `--labels`.
 
 use super::{Arguments, check_outputs, tell_made};
+use crate::memory::{Held, OfVolume};
 use crate::mesh_file;
 use crate::outcome::Outcome;
 use crate::store::{write_whole, write_whole_by};
@@ -34,14 +35,17 @@ pub(super) fn extract(arguments: &Arguments, path: &Path) -> Result<Outcome> {
     let smoothing = smoothing(arguments.method.or(arguments.recipe))?;
     let only = only(&arguments.only)?;
     let settings = LabelSettings { only: &only, smoothing, close: arguments.source.options().close };
-    let volume = arguments.source.limit().read(path)?;
+    let (limit, before) = (arguments.source.limit(), Held::now());
+    let unread = isostudy_volume::open(path)?;
+    let held = OfVolume::samples(&unread).with("the labels", unread.memory_bytes());
+    let volume = limit.read(unread, held)?;
     let labels = volume.labels().with_context(name)?;
     let isostudy_volume::Volume { counts, origin, steps, values } = volume;
     drop(values);
     let volume = LabelVolume { counts, labels: &labels, origin, steps };
     let execution = Execution { threads: arguments.threads as usize };
     let began = Instant::now();
-    let surface = volume.extract(&settings, &execution).with_context(name)?;
+    let surface = limit.hold(before, || Ok(volume.extract(&settings, &execution)?)).with_context(name)?;
     let time = began.elapsed();
     write_whole_by(out, |file| {
         let mut buffered = BufWriter::new(file);

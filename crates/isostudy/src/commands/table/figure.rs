@@ -58,6 +58,7 @@ fn ours(limit: Limit) -> Result<Vec<Source>> {
         close: false,
         allow_open: false,
         limit,
+        method: None,
     };
     let cube = |half: f32| Bounds { min: Vec3::splat(-half), max: Vec3::splat(half) };
     let mut sources = Vec::new();

@@ -85,8 +85,9 @@ pub(super) fn for_each_triangle(
         source.bounds.size().to_array().map(|side| ((f64::from(side) / spacing).ceil() as usize).max(1));
     // Points in half cubes.
     let points = size.map(|n| 2 * n + 1);
-    let bytes = points.iter().fold(size_of::<f32>() as u64, |bytes, &n| bytes.saturating_mul(n as u64));
-    if bytes.saturating_add(source.held) > limit.bytes {
+    let bytes =
+        points.iter().fold(size_of::<Option<f32>>() as u64, |bytes, &n| bytes.saturating_mul(n as u64));
+    if bytes.saturating_add(source.held.map_or(0, |volume| volume.total())) > limit.bytes {
         bail!("the samples need {} MiB, more than {}", bytes >> 20, limit.name);
     }
     let mut values: Vec<Option<f32>> = vec![None; points.iter().product()];
