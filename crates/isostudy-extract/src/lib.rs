@@ -124,6 +124,7 @@
 //! - With [`Faces::Trilinear`] the mesh has the components, tunnels and boundary loops of the trilinear interpolant of the samples,
 //!   at a level above the isovalue by less than any number: samples, saddles of faces and saddles of cells that equal it are
 //!   outside. The crate `trilinear` counts the same without a mesh; 100,000 random grids agree (`tests/it/cubes_trilinear.rs`).
+//!   Where distances from the isovalue differ by a factor of 1e8 and more, a tunnel may be missed (docs/cubes.md).
 //! - A vertex is a crossing, but for a few in cells whose polygons have all diagonals in faces, or whose tube has a rung there.
 //!   Vertices stand in storage order of the lower ends of their edges, then of the axes.
 //! - [`SnapCubes`] draws crossings to nearby samples, so that angles are bounded; its mesh is closed off the box, and a manifold only

@@ -342,10 +342,10 @@ fn bricks_do_not_show(made: &Made) -> Result<(), Broken> {
     make().map_err(Broken::on_cells)
 }
 
-/// How many times as far from nought as another a sample or the isovalue may be, for [`has_the_topology_of_the_samples`]: then sums and
-/// differences of samples are exact in double precision. Beyond, the place of a tunnel's saddle may not be known at all, and a tunnel is
-/// missed or made: of -1, 1, 1e-40 and 0 at the corners of a cell, which was the first that this test found.
-const FARTHER: f64 = 1e8;
+/// How many times as far from nought as another a sample, the isovalue or their difference may be, for
+/// [`has_the_topology_of_the_samples`]. The place of a tunnel's saddle is the root of a quadratic in double precision, known to about
+/// 1e-8. Beyond, a tunnel may be missed or made: of -1, 1, 1e-40 and 0 at the corners of a cell, which was the first that was found.
+const FARTHER: f64 = 1e7;
 
 /// Of samples that are numbers; others have no interpolant.
 fn has_the_topology_of_the_samples(made: &Made) -> Result<(), Broken> {
