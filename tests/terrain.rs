@@ -121,7 +121,11 @@ fn is_busy(out: &Path) -> bool {
 fn first_screen(out: &Path, known: &[Known], objects: &[&str]) {
     let labels: BTreeMap<String, String> =
         rows(out, "methods").into_iter().map(|row| (row["id"].clone(), row["method"].clone())).collect();
+    // Codes are set whole, in elements of their own.
     let page = fs::read_to_string(out.join("index.html")).unwrap();
+    let (first, others) = page.split_once("<span class=\"code\">").expect("codes with hyphens");
+    let others = others.split("<span class=\"code\">").map(|of| of.replacen("</span>", "", 1));
+    let page = first.to_owned() + &others.collect::<String>();
     let wants = [
         ("Shortest time", "fastest"),
         ("Smallest mean error, of the ground alone", "closest"),

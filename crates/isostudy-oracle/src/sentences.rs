@@ -200,7 +200,9 @@ fn contrasts(
     {
         let row = format!("{section}: {}", finding.text);
         tested(of, &finding.text, &row, compared);
-        let holds = of.conclusion().is_none_or(|said| said.starts_with("differs"));
+        // That the parts are about other things is said with it.
+        let is_told = |said: &str| said.starts_with("differs") || said == "parts about other things";
+        let holds = of.conclusion().is_none_or(is_told);
         compared.check(holds, ["report", &row, "standing"], "holds", format!("{:?}", of.conclusion()));
     }
 }
@@ -244,6 +246,7 @@ fn standing(of: &Hypothesis, finding: &Finding, row: &str, compared: &mut Compar
         "too few" => &["too few"],
         "differs" | "differs, within the margin" => &["holds"],
         "equal within the margin" => &["equal"],
+        "parts about other things" => &["not answerable"],
         _ => &["open"],
     };
     let got = finding.standing.label();

@@ -344,7 +344,7 @@ mod tests {
         let is_it = |block: &&Block| matches!(block, Block::Finding(of) if of.text.starts_with(start));
         let Some(Block::Finding(found)) = blocks.iter().find(is_it) else { panic!("{start}") };
         assert!(found.standing == Standing::Holds && found.text.contains(" points, assumed)"), "{found:?}");
-        let is_said = |block: &Block| matches!(block, Block::Text(of) if of.contains("and 5 % is assumed"));
+        let is_said = |block: &Block| matches!(block, Block::Text(of) if of.contains("so 5 % is assumed"));
         assert!(blocks.iter().any(is_said));
     }
 

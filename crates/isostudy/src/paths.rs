@@ -46,6 +46,8 @@ fn folder() -> TempDir {
     let ball = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 0\nf 1 2 3\nf 2 1 4\nf 3 2 4\nf 1 3 4\n";
     std::fs::write(folder.path().join("ball.obj"), ball).unwrap();
     std::fs::write(folder.path().join("answers.csv"), "a,b\n1,2\n").unwrap();
+    let volume = "NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nencoding: text\n\n0 0 0 0 2 2 2 2\n";
+    std::fs::write(folder.path().join("half.nrrd"), volume).unwrap();
     folder
 }
 
@@ -88,6 +90,7 @@ fn good(folder: &Path, argument: &Arg) -> Vec<String> {
         "old" | "new" => this,
         "out" => "written".into(),
         "a" | "b" | "mesh" | "input" => "ball.obj".into(),
+        "volume" => "half.nrrd".into(),
         "tables" => "mc".into(),
         "id" => "torus_bi".into(),
         "threads" | "seconds" | "isovalue" => "1".into(),

@@ -33,6 +33,8 @@ pub(crate) struct Hypothesis {
     by_side: Option<bool>,
     /// Whether some pair was shown with its sides exchanged.
     alternates: bool,
+    /// Whether the parts of a difference were asked about other things, of people without a thing that both parts share.
+    other_things: bool,
     /// Question by sign, and by which part of a difference.
     parts: Vec<BTreeMap<usize, i64>>,
 }
@@ -67,6 +69,7 @@ impl Hypothesis {
             (false, true) if self.by_object? => "averages out",
             (false, true) if self.by_side? => "hidden by a side",
             (true, _) if !self.alternates && self.by_side? => "may be the side's",
+            (true, _) if self.other_things => "parts about other things",
             (true, false) => "differs",
             (true, true) => "differs, within the margin",
             (false, true) => "equal within the margin",
@@ -281,6 +284,34 @@ fn stratum(question: &Question, of_objects: bool) -> String {
     }
 }
 
+/// Whether two parts' answers, of people who have both and no stratum with both, lie in other strata: a tenth of one part's answers
+/// would have to be about other strata to be spread as the other's.
+fn are_about_other_things(
+    people: &[Vec<(usize, i64)>],
+    parts: &[BTreeMap<usize, i64>],
+    strata: &[usize],
+) -> bool {
+    let [first, second] = parts else { return false };
+    let mut answers: [BTreeMap<usize, f64>; 2] = Default::default();
+    for own in people {
+        let of = |part: &BTreeMap<usize, i64>| -> Vec<usize> {
+            own.iter().filter(|(q, _)| part.contains_key(q)).map(|(q, _)| strata[*q]).collect()
+        };
+        let both = [of(first), of(second)];
+        let is_whole = both.iter().all(|of| !of.is_empty());
+        if is_whole && !both[0].iter().any(|stratum| both[1].contains(stratum)) {
+            for (sum, of) in answers.iter_mut().zip(both) {
+                of.into_iter().for_each(|stratum| *sum.entry(stratum).or_default() += 1.0);
+            }
+        }
+    }
+    let [a, b] = answers.each_ref().map(|of| of.values().sum::<f64>());
+    let share = |of: &BTreeMap<usize, f64>, stratum, all: f64| of.get(&stratum).map_or(0.0, |n| n / all);
+    // What the first has more of, over all strata: half of the sum of all differences.
+    let more = |stratum: &usize| share(&answers[0], *stratum, a) - share(&answers[1], *stratum, b);
+    answers[0].keys().map(|stratum| more(stratum).max(0.0)).sum::<f64>() > 0.1
+}
+
 fn tested(
     oracle: &Oracle<'_>,
     family: String,
@@ -307,7 +338,9 @@ fn tested(
         }
     }
     let p = sign_flip(&scores);
+    let other_things = are_about_other_things(&people, &parts, &strata);
     Hypothesis {
+        other_things,
         contrast: format!("{}-{}", levels[0], levels[1]),
         levels: levels.clone(),
         reach: parts.len() as f64,

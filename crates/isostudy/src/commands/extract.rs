@@ -16,7 +16,7 @@ use crate::place::place;
 use crate::source::Source;
 use crate::store::{write_whole, write_whole_by};
 use crate::terminal::{counted, grouped, say};
-use crate::{input, mesh_file, records};
+use crate::{input, mesh_file, records, seeds};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
 use isostudy_design::record::Counts;
@@ -198,14 +198,17 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if let Some(path) = &arguments.picture {
         write_whole(path, &picture(&extraction.mesh, arguments.crease_deg)?)?;
     }
-    if let (Cells::Own { is_turned: true, .. }, Some(found)) = (&cells, open_edges(&extraction.mesh)) {
+    // With --json the report has it all.
+    if !arguments.json
+        && let Cells::Own { is_turned: true, .. } = &cells
+        && let Some(found) = open_edges(&extraction.mesh)
+    {
         let name = &source.name;
         tell!(
             "{name}: the grid is turned against the axes, and this method extracts on the volume's own cells. So the surface is open \
              where it leaves them ({found}). --close closes it"
         );
     }
-    // The report has it.
     if !arguments.json {
         tell_made(out, extraction.counts.triangles, extraction.counts.vertices, extraction.times.total());
     }
@@ -252,6 +255,8 @@ fn on_a_grid(
         .context("one of a study, --field, --volume and --mesh is needed")?;
     let grid = source.grid();
     let limit = arguments.source.limit();
+    // It names the box itself.
+    seeds::check(method, &grid.bounds)?;
     limit.check_method(method, &grid, execution, source.held).with_context(|| source.place())?;
     let mut kept = FieldCache::default();
     let field = Counted::new(&*source.field, &mut kept);
