@@ -165,7 +165,7 @@ fn a_mesh_grows_no_larger_than_its_limit() {
 
 #[cfg(target_os = "linux")]
 #[test]
-#[ignore = "takes minutes: every method many times"]
+#[ignore = "minutes: run by make test-long"]
 fn no_method_holds_more_than_its_limit() {
     let folder = Folder::new();
     noise(&folder.path("noise.nrrd"), 96);

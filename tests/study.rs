@@ -401,13 +401,21 @@ fn a_study_of_more_than_an_hour_is_refused() {
         for part in [
             "takes ",
             " hours or more by trials",
-            "a study may take one hour",
+            "limits.hours allows 1. ",
             "objects[0].benchmark_spacing = 0.002",
         ] {
             assert!(run.stderr.contains(part), "{part:?} is not in: {}", run.stderr);
         }
     }
     assert!(!fixture.out().exists(), "something was written");
+    // Who wants less says so; who wants more, too.
+    let fixture = Fixture::new();
+    fixture.edit("memory_gib = 8.0", "memory_gib = 8.0\nhours = 1e-6");
+    let run = Run::of(isostudy().arg("validate").arg(fixture.config()));
+    assert!(run.code == Some(2) && run.stderr.contains("limits.hours allows 0.000001. "), "{}", run.stderr);
+    fixture.edit("hours = 1e-6", "hours = 0.0");
+    let run = Run::of(isostudy().arg("validate").arg(fixture.config()));
+    assert!(run.code == Some(2) && run.stderr.contains("limits.hours"), "{}", run.stderr);
 }
 
 #[test]

@@ -101,6 +101,14 @@ pub struct StudySection {
 pub struct LimitsSection {
     /// Most memory that one extraction may need, in GiB.
     pub memory_gib: f64,
+    /// Most time that making, measuring and timing the meshes may take by an estimate; [`HOURS`](Self::HOURS) unless given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hours: Option<f64>,
+}
+
+impl LimitsSection {
+    /// The default of `hours`: a spacing by mistake is found out, and what is meant to take longer says so.
+    pub const HOURS: f64 = 1.0;
 }
 
 /// One object of the study.

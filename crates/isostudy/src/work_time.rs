@@ -4,6 +4,7 @@ use crate::fields::Fields;
 use crate::prepare::{Wanted, grid};
 use crate::recipe::{Recipe, recipe};
 use anyhow::{Result, bail};
+use isostudy_design::config::LimitsSection;
 use isostudy_design::record::Purpose;
 use isostudy_design::{Configuration, Study};
 use isostudy_extract::{Execution, Extractor, Method};
@@ -16,8 +17,6 @@ const SLOWEST: f64 = 1e6;
 const TRIALS: [u32; 2] = [16, 32];
 /// How often each mesh is made.
 const REPEATS: usize = 3;
-/// The longest that a study may take.
-const LIMIT_S: f64 = 3600.0;
 /// How times grow with the cells along a side: with their square, as the surface, up to their cube, as the volume.
 const POWERS: [f64; 2] = [2.0, 3.0];
 
@@ -32,7 +31,7 @@ struct Work<'a> {
     times: f64,
 }
 
-/// Refuses a study of more than an hour. One that is far below by any measure is not tried; of the others each configuration is
+/// Refuses a study of more than `limits.hours`. One that is far below by any measure is not tried; of the others each configuration is
 /// extracted and measured on 16 and on 32 cells, three times on one thread, and the least time grows from there as it did between them.
 ///
 /// Distances are measured once. Programs, animations and pages are not in it, nor is `isostudy bench`.
@@ -41,7 +40,9 @@ struct Work<'a> {
 /// If it takes longer, with the number and what takes most; if a field cannot be made.
 pub(crate) fn check(study: &Study) -> Result<()> {
     let mut works = works(study)?;
-    if works.iter().map(Work::all_cells).sum::<f64>() / SLOWEST <= LIMIT_S {
+    let hours = study.file.limits.hours.unwrap_or(LimitsSection::HOURS);
+    let limit_s = 3600.0 * hours;
+    if works.iter().map(Work::all_cells).sum::<f64>() / SLOWEST <= limit_s {
         return Ok(());
     }
     // What is most likely too much comes first, and what comes after too much is not tried.
@@ -60,11 +61,11 @@ pub(crate) fn check(study: &Study) -> Result<()> {
         };
         known.push((work, tried));
         total_s += work.seconds(tried);
-        if total_s > LIMIT_S {
+        if total_s > limit_s {
             let first = works[0].place(study);
             bail!(
-                "{}: making, measuring and timing the meshes takes {:.1} hours or more by trials on {} and {} cells; a study may take \
-                 one hour. The most cells has {first}: a larger spacing or fewer benchmark.short_iterations take less",
+                "{}: making, measuring and timing the meshes takes {:.1} hours or more by trials on {} and {} cells; limits.hours allows \
+                 {hours}. {first} has the most cells. A larger spacing or fewer benchmark.short_iterations take less",
                 study.path.display(),
                 total_s / 3600.0,
                 TRIALS[0],

@@ -21,6 +21,9 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
         return c.refuse("study.id", id, "must be 1 to 64 lower-case letters, digits or hyphens");
     }
     c.positive("limits.memory_gib", file.limits.memory_gib, 1024.0)?;
+    if let Some(hours) = file.limits.hours {
+        c.positive("limits.hours", hours, 1000.0)?;
+    }
     check_arrangements(c, file)?;
 
     let t = &file.turntable;

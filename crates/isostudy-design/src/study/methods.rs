@@ -33,6 +33,12 @@ impl Study {
         &self.factors[level.factor.0].levels[level.index]
     }
 
+    /// The level with a code, of the declared factor with a name: how groups of answers about levels call both.
+    pub fn level_named(&self, factor: &str, code: &str) -> Option<&LevelSpec> {
+        let mut factors = self.declared_factors().map(|factor| self.factor(factor));
+        factors.find(|own| own.name == factor)?.levels.iter().find(|level| level.code == code)
+    }
+
     /// The factor that every study has: what a method is as a whole.
     pub fn method_factor(&self) -> Factor {
         Factor(self.factors.len() - 1)

@@ -274,7 +274,7 @@ fn full_study() -> StudyFile {
     StudyFile {
         schema: 1,
         study: StudySection { id: text(), title: text(), seed: 1 },
-        limits: LimitsSection { memory_gib: 1.0 },
+        limits: LimitsSection { memory_gib: 1.0, hours: Some(1.0) },
         extraction: Some(Table::new()),
         objects: fields().map(object).into(),
         arrangements: vec![Arrangement::BodyCentred],

@@ -39,7 +39,7 @@ fn seams_between_random_levels_face_the_outside() {
 }
 
 #[test]
-#[ignore = "10,000 worlds of each shape: minutes"]
+#[ignore = "minutes: run by make test-long"]
 fn seams_between_ten_thousand_random_levels_face_the_outside() {
     std::thread::scope(|scope| {
         for part in 0..4 {

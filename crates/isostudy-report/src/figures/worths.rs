@@ -70,9 +70,7 @@ fn group_in_words(study: &Study, name: &str) -> String {
 
 /// A method's label, or that of a level of the factor after which the group is named.
 fn item_in_words(study: &Study, group: &BallotGroup, name: &str) -> String {
-    let factor =
-        study.declared_factors().map(|factor| study.factor(factor)).find(|factor| factor.name == group.name);
-    let level = factor.and_then(|factor| factor.levels.iter().find(|level| level.code == name));
+    let level = study.level_named(&group.name, name);
     let method = study.methods.iter().find(|method| method.id.as_str() == name);
     match (level, method) {
         (Some(level), _) if level.label == "none" => level.phrase.clone(),

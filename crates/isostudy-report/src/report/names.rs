@@ -45,10 +45,8 @@ pub(super) fn in_group(evidence: &Evidence<'_>, group: &str) -> String {
 
 /// An item of a scale: of one over a factor's levels the level in words, whose code reads as another word; else its own name.
 pub(super) fn item(study: Option<&Study>, group: &str, item: &str) -> String {
-    let factors =
-        study.into_iter().flat_map(|study| study.declared_factors().map(|factor| study.factor(factor)));
-    let mut levels = factors.filter(|factor| factor.name == group).flat_map(|factor| &factor.levels);
-    levels.find(|level| level.code == item).map_or_else(|| item.to_owned(), |level| level.phrase.clone())
+    let level = study.and_then(|study| study.level_named(group, item));
+    level.map_or_else(|| item.to_owned(), |level| level.phrase.clone())
 }
 
 /// The objects on which two items are compared, with a space before it; nothing for all of them.

@@ -5,6 +5,19 @@ use isostudy_responses::{Answer, Choice, Question, Responses};
 use isostudy_statistics::Outcome::{self, Left, Right, Tie};
 use isostudy_statistics::ShownBallot;
 
+/// Of a study with answers and nothing else.
+fn of_answers<'a>(study: &'a isostudy_design::Study, answered: &'a Answered) -> Inputs<'a> {
+    Inputs {
+        study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        stored: &[],
+        answers: Some(answered),
+        left_out: &[],
+    }
+}
+
 /// What the paper's study says if people answered like this; the argument is participant and question.
 fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'static str, Vec<Finding>)> {
     let study = fixture::study();
@@ -14,15 +27,7 @@ fn said(people: usize, answer: impl Fn(usize, usize) -> Outcome) -> Vec<(&'stati
         of.choice = choice(answer(of.participant as usize, of.question as usize));
     }
     let answered = Answered::of(&study, answers).unwrap();
-    let inputs = Inputs {
-        study: &study,
-        meshes: &[],
-        bench: None,
-        chunks: &[],
-        stored: &[],
-        answers: Some(&answered),
-        left_out: &[],
-    };
+    let inputs = of_answers(&study, &answered);
     let results = Results::of(&inputs);
     let evidence = Evidence::of_study(&results);
     let mut builder = Builder::new(&[], &[]);
@@ -184,15 +189,7 @@ fn equal_counts_stand_as_in_the_table() {
 fn levels_of_a_scale_are_told_by_their_names() {
     let study = fixture::study();
     let answered = fixture::answered(&study);
-    let inputs = Inputs {
-        study: &study,
-        meshes: &[],
-        bench: None,
-        chunks: &[],
-        stored: &[],
-        answers: Some(&answered),
-        left_out: &[],
-    };
+    let inputs = of_answers(&study, &answered);
     let results = Results::of(&inputs);
     let text = super::report(&results, &crate::tables(&results), &[], Vec::new()).to_markdown();
     assert!(text.contains("Integrated clustering stands highest.") && !text.contains(" I stands"), "{text}");
@@ -385,15 +382,7 @@ fn who_is_left_out_is_left_out_everywhere() {
     let mut study = fixture::study();
     study.file.analysis.exclude = vec![isostudy_design::config::Exclusion::Outlying];
     let answered = Answered::of(&study, fixture::answers(&study)).unwrap();
-    let inputs = Inputs {
-        study: &study,
-        meshes: &[],
-        bench: None,
-        chunks: &[],
-        stored: &[],
-        answers: Some(&answered),
-        left_out: &[],
-    };
+    let inputs = of_answers(&study, &answered);
     let results = Results::of(&inputs);
     let (tables, figures) = (crate::tables(&results), crate::figures(&results).unwrap());
     let named = |name: &str| tables.iter().find(|table| table.name == name).unwrap();
@@ -412,15 +401,7 @@ fn who_is_left_out_is_left_out_everywhere() {
     let mut hasty = fixture::answers(&study);
     hasty.answers.iter_mut().for_each(|answer| answer.rt_ms = Some(10.0));
     let answered = Answered::of(&study, hasty).unwrap();
-    let inputs = Inputs {
-        study: &study,
-        meshes: &[],
-        bench: None,
-        chunks: &[],
-        stored: &[],
-        answers: Some(&answered),
-        left_out: &[],
-    };
+    let inputs = of_answers(&study, &answered);
     let results = Results::of(&inputs);
     let lead = report(&results, &crate::tables(&results), &[], Vec::new()).lead;
     assert_eq!(

@@ -145,7 +145,7 @@ fn every_acknowledged_answer_is_in_every_export_once() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: run by make test-long"]
 fn every_acknowledged_answer_is_in_every_export_once_in_many_sessions() {
     sessions(200_000);
 }
@@ -222,7 +222,7 @@ fn a_fault_at_every_operation_loses_nothing() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: run by make test-long"]
 fn a_fault_at_every_operation_loses_nothing_whatever_is_kept() {
     faults_everywhere(20);
 }
