@@ -164,6 +164,12 @@ for (const file of ['index.html', 'report.html']) {
       await page.waitForFunction(() => document.querySelector('#decision').getBoundingClientRect().top < 200);
       const table = await box('.fit.choices');
       assert.ok(table.top < height, 'the table of choices is where the way leads');
+      const whole = await page.evaluate(() => document.documentElement.scrollWidth);
+      assert.ok(whole <= width, `the page is ${whole} px wide`);
+      const lefts = await page.evaluate(() => [...document.querySelectorAll('ul.methods li')].map((of) => {
+        return of.querySelector('code').getBoundingClientRect().left - of.getBoundingClientRect().left;
+      }));
+      assert.equal(new Set(lefts.map(Math.round)).size, 1, `codes of methods begin at ${lefts}`);
       await page.context().close();
     });
   }

@@ -159,10 +159,8 @@ impl StudyField for Expression {
             for (i, noise) in self.noises.iter().enumerate() {
                 let Some((arguments, noise)) = noise else { continue };
                 let found = arguments.eval(columns, evaluator);
-                let (x, y, z) = (&found[0], &found[1], &found[2]);
-                let at = |i: usize| [x[i], y[i], z[i]];
-                columns[3 + i].clear();
-                columns[3 + i].extend((0..values.len()).map(|i| noise_call::value(noise, at(i))));
+                let places = [0, 1, 2].map(|axis| &found[axis][..values.len()]);
+                noise_call::values(noise, places, &mut columns[3 + i]);
             }
             values.copy_from_slice(&self.value.eval(columns, evaluator)[0]);
         });

@@ -14,6 +14,8 @@ use crate::ExpressionError;
 
 /// Amplitude ratio of an octave to the one before.
 const GAIN: f64 = 0.5;
+/// How many points are worked on at a time.
+const PART: usize = 64;
 /// Up to here every whole number is one in single precision.
 const MOST_SEED: f32 = 16_777_215.0;
 
@@ -76,6 +78,27 @@ pub(crate) fn call(
 /// Noise at a point, as a formula sees it.
 pub(crate) fn value(noise: &Fractal, [x, y, z]: [f32; 3]) -> f32 {
     noise.value([x, y, z].map(f64::from).into()) as f32
+}
+
+/// The same at many points, in place of what `found` has.
+pub(crate) fn values(noise: &Fractal, places: [&[f32]; 3], found: &mut Vec<f32>) {
+    found.clear();
+    // One point has no neighbour to share work with.
+    if let [[x], [y], [z]] = places {
+        found.push(value(noise, [*x, *y, *z]));
+        return;
+    }
+    let (mut of_part, mut values) = ([[0.0; PART]; 3], [0.0; PART]);
+    for first in (0..places[0].len()).step_by(PART) {
+        let count = PART.min(places[0].len() - first);
+        for (to, from) in of_part.iter_mut().zip(places) {
+            for (to, from) in to.iter_mut().zip(&from[first..first + count]) {
+                *to = f64::from(*from);
+            }
+        }
+        noise.values(of_part.each_ref().map(|along| &along[..count]), &mut values[..count]);
+        found.extend(values[..count].iter().map(|value| *value as f32));
+    }
 }
 
 /// The same with its changes along the axes, from those of its arguments.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::noise::{NOISE_SLOPE, Near, noise, noise_and_gradient, noise_range};
+use crate::noise::{NOISE_SLOPE, Near, noise, noise_and_gradient, noise_range, noise_row};
 
 /// The most octaves of a [`Fractal`].
 pub const MOST_OCTAVES: u32 = 16;
@@ -10,6 +10,11 @@ pub const MOST_OCTAVES: u32 = 16;
 /// Where an octave's lattice lies in that of the one before: not on it, since noise is 0 at all its points. Not along z,
 /// so that a plane z = 0 is one of whole numbers in all octaves, where noise takes half the time.
 const SHIFT: DVec3 = DVec3::new(0.381_966_011_250_105_1, 0.618_033_988_749_894_9, 0.0);
+
+/// How many places are worked on at a time.
+pub(crate) const ROW: usize = 64;
+/// Of fewer, each is worked on alone: there is nothing to share.
+pub(crate) const FEW: usize = 4;
 
 /// What an octave makes of the noise `n`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,6 +60,40 @@ impl Fractal {
             sum += self.shaped(noise(octave.place(p), octave.seed)) * weight;
         }
         sum
+    }
+
+    /// [`value`](Self::value) at `(x[i], y[i], z[i])` into `values[i]`, to the bit. It is faster where places that follow each other are
+    /// near each other. All slices have the same length.
+    pub fn values(&self, [x, y, z]: [&[f64]; 3], values: &mut [f64]) {
+        if values.len() < FEW {
+            for (i, value) in values.iter_mut().enumerate() {
+                *value = self.value(DVec3::new(x[i], y[i], z[i]));
+            }
+            return;
+        }
+        for first in (0..values.len()).step_by(ROW) {
+            let part = first..values.len().min(first + ROW);
+            let places = [x, y, z].map(|along| &along[part.clone()]);
+            self.values_of_part(places, &mut values[part]);
+        }
+    }
+
+    /// The same for at most [`ROW`] places: octave by octave, in the order of one value.
+    fn values_of_part(&self, places: [&[f64]; 3], values: &mut [f64]) {
+        let (mut of_octave, mut found) = ([[0.0; ROW]; 3], [0.0; ROW]);
+        let found = &mut found[..values.len()];
+        values.fill(0.0);
+        for (octave, weight) in self.octaves() {
+            for ((to, from), shift) in of_octave.iter_mut().zip(places).zip(octave.shift.to_array()) {
+                for (to, from) in to.iter_mut().zip(from) {
+                    *to = from * octave.frequency + shift;
+                }
+            }
+            noise_row(of_octave.each_ref().map(|along| &along[..found.len()]), octave.seed, found);
+            for (sum, n) in values.iter_mut().zip(&*found) {
+                *sum += self.shaped(*n) * weight;
+            }
+        }
     }
 
     /// [`value`](Self::value) to the bit, and its gradient; where the noise of an octave is 0, that of one side of the crest or crease.

@@ -123,9 +123,37 @@ fn beyond(p: DVec3) -> f64 {
     if p.is_finite() { 0.0 } else { f64::NAN }
 }
 
+/// [`noise`] at `(x[i], y[i], z[i])` into `values[i]`, to the bit. All slices have the same length.
+///
+/// Places that follow each other in one cell share its gradients, which are most of the work.
+pub(crate) fn noise_row([x, y, z]: [&[f64]; 3], seed: u32, values: &mut [f64]) {
+    let mut first = 0;
+    while first < values.len() {
+        let Some(mut cell) = Cell::of(DVec3::new(x[first], y[first], z[first]), seed) else {
+            values[first] = beyond(DVec3::new(x[first], y[first], z[first]));
+            first += 1;
+            continue;
+        };
+        let [low_x, low_y, low_z] = cell.lowest;
+        let is_flat = z[first] == low_z;
+        let is_within = |i: usize| {
+            let along = |v: f64, low: f64| v >= low && v < low + 1.0;
+            along(x[i], low_x) && along(y[i], low_y) && along(z[i], low_z) && (z[i] == low_z) == is_flat
+        };
+        let end = (first + 1..values.len()).find(|&i| !is_within(i)).unwrap_or(values.len());
+        for i in first..end {
+            cell.t = [x[i] - low_x, y[i] - low_y, z[i] - low_z];
+            values[i] = SCALE * if is_flat { cell.flat_value() } else { cell.full_value() };
+        }
+        first = end;
+    }
+}
+
 /// The unit cell round a point.
 struct Cell {
-    /// The point, from the cell's lowest corner.
+    /// Its lowest corner.
+    lowest: [f64; 3],
+    /// The point, from there.
     t: [f64; 3],
     /// Of the corners: x fastest, then y, then z.
     gradients: [[f64; 3]; 8],
@@ -137,25 +165,26 @@ impl Cell {
         if !(p.x.abs() < WHOLE && p.y.abs() < WHOLE && p.z.abs() < WHOLE) {
             return None;
         }
-        let mut t = [0.0; 3];
-        let mut lowest = GOLDEN.wrapping_mul(u64::from(seed) + 1);
+        let (mut lowest, mut t) = ([0.0; 3], [0.0; 3]);
+        let mut first = GOLDEN.wrapping_mul(u64::from(seed) + 1);
         for (axis, v) in p.to_array().into_iter().enumerate() {
             let towards_zero = v as i64;
             let whole = if towards_zero as f64 > v { towards_zero - 1 } else { towards_zero };
-            t[axis] = v - whole as f64;
-            lowest = lowest.wrapping_add(STEPS[axis].wrapping_mul(whole as u64));
+            lowest[axis] = whole as f64;
+            t[axis] = v - lowest[axis];
+            first = first.wrapping_add(STEPS[axis].wrapping_mul(whole as u64));
         }
         // Corners that count for nothing are left at zero.
         let corners = if t[2] == 0.0 { 4 } else { 8 };
         let mut gradients = [[0.0; 3]; 8];
         for (corner, gradient) in gradients[..corners].iter_mut().enumerate() {
-            let mut place = lowest;
+            let mut place = first;
             for (axis, step) in STEPS.into_iter().enumerate() {
                 place = place.wrapping_add(if corner >> axis & 1 == 1 { step } else { 0 });
             }
             *gradient = GRADIENTS[hash(place)];
         }
-        Some(Self { t, gradients })
+        Some(Self { lowest, t, gradients })
     }
 
     /// What a corner's gradient says at the point.
@@ -168,15 +197,29 @@ impl Cell {
 
     #[inline]
     fn value(&self) -> f64 {
+        if self.t[2] == 0.0 { self.flat_value() } else { self.full_value() }
+    }
+
+    /// The value on the lower face, where the upper layer has weight zero.
+    #[inline]
+    fn flat_value(&self) -> f64 {
+        let [x, y, _] = self.t.map(fade);
+        self.layer(0, x, y) + 0.0
+    }
+
+    #[inline]
+    fn full_value(&self) -> f64 {
         let [x, y, z] = self.t.map(fade);
-        let layer = |corner: usize| {
-            let front = blend(self.slant(corner), self.slant(corner + 1), x);
-            let back = blend(self.slant(corner + 2), self.slant(corner + 3), x);
-            blend(front, back, y)
-        };
-        // With weight zero the upper layer adds zero.
-        let upper = if z == 0.0 { 0.0 } else { (layer(4) - layer(0)) * z };
-        layer(0) + upper
+        let upper = (self.layer(4, x, y) - self.layer(0, x, y)) * z;
+        self.layer(0, x, y) + upper
+    }
+
+    /// The four corners from this one, blended along x and y.
+    #[inline]
+    fn layer(&self, corner: usize, x: f64, y: f64) -> f64 {
+        let front = blend(self.slant(corner), self.slant(corner + 1), x);
+        let back = blend(self.slant(corner + 2), self.slant(corner + 3), x);
+        blend(front, back, y)
     }
 
     fn value_and_gradient(&self) -> (f64, DVec3) {

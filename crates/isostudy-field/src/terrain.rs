@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use isostudy_mesh::Bounds;
 
 use crate::StudyField;
-use crate::fractal::{Fractal, NoiseShape};
+use crate::fractal::{FEW, Fractal, NoiseShape, ROW};
 use relief::Relief;
 pub use settings::{TerrainCharacter, TerrainError, TerrainSettings};
 
@@ -130,6 +130,56 @@ impl Terrain {
             value = value.min(self.cave(self.caves.map(|cave| cave.value(self.cave_place(q)))));
         }
         value
+    }
+
+    /// The values at no more than [`ROW`] places, each [`value`](Self::value) to the bit.
+    fn values(&self, places: &[DVec3], values: &mut [f64]) {
+        let count = places.len();
+        let mut x = [0.0; ROW];
+        let mut y = [0.0; ROW];
+        for ((x, y), q) in x.iter_mut().zip(&mut y).zip(places) {
+            (*x, *y) = (q.x, q.y);
+        }
+        if self.has_overhangs() {
+            let shifted = Columns::of(places.iter().map(|q| self.shift_place(*q)));
+            for (along, shift) in [&mut x, &mut y].into_iter().zip(&self.shifts) {
+                shift.values(shifted.columns(), &mut values[..count]);
+                for (along, shift) in along.iter_mut().zip(&*values) {
+                    *along += shift * self.settings.overhang;
+                }
+            }
+        }
+        self.relief.heights(&x[..count], &y[..count], values);
+        for (value, q) in values.iter_mut().zip(places) {
+            *value -= q.z;
+            if self.settings.closed {
+                *value = value.min(self.wall(*q));
+            }
+        }
+        if self.settings.caves > 0.0 {
+            self.dig(places, values);
+        }
+    }
+
+    /// Takes the caves out of the values at so many places. In the air they change nothing, and need not be known.
+    fn dig(&self, places: &[DVec3], values: &mut [f64]) {
+        let least = self.least_of_caves();
+        let (mut rock, mut in_rock) = ([0; ROW], 0);
+        for (i, value) in values.iter().enumerate() {
+            if *value > least {
+                rock[in_rock] = i;
+                in_rock += 1;
+            }
+        }
+        let rock = &rock[..in_rock];
+        let dug = Columns::of(rock.iter().map(|&i| self.cave_place(places[i])));
+        let mut found = [[0.0; ROW]; 2];
+        for (found, cave) in found.iter_mut().zip(&self.caves) {
+            cave.values(dug.columns(), &mut found[..in_rock]);
+        }
+        for (k, &i) in rock.iter().enumerate() {
+            values[i] = values[i].min(self.cave([found[0][k], found[1][k]]));
+        }
     }
 
     /// How far the ground is above a place.
@@ -258,13 +308,60 @@ impl Terrain {
     fn place(&self, p: Vec3) -> DVec3 {
         (p.as_dvec3() - self.origin) / self.width
     }
+
+    /// In the unit of the coordinates, from a value in widths.
+    fn rounded(&self, p: Vec3, value: f64) -> f32 {
+        // The least of a number and none is the number.
+        if p.is_finite() { (value * self.width) as f32 } else { f32::NAN }
+    }
+}
+
+/// Up to [`ROW`] places, axis by axis.
+struct Columns {
+    along: [[f64; ROW]; 3],
+    count: usize,
+}
+
+impl Columns {
+    fn of(places: impl Iterator<Item = DVec3>) -> Self {
+        let mut of = Self { along: [[0.0; ROW]; 3], count: 0 };
+        for p in places {
+            for (along, v) in of.along.iter_mut().zip(p.to_array()) {
+                along[of.count] = v;
+            }
+            of.count += 1;
+        }
+        of
+    }
+
+    fn columns(&self) -> [&[f64]; 3] {
+        self.along.each_ref().map(|along| &along[..self.count])
+    }
 }
 
 impl StudyField for Terrain {
     fn sample(&self, p: Vec3) -> f32 {
-        let value = self.value(self.place(p));
-        // The least of a number and none is the number.
-        if p.is_finite() { (value * self.width) as f32 } else { f32::NAN }
+        self.rounded(p, self.value(self.place(p)))
+    }
+
+    /// Noise is looked up cell by cell, of which a row has several points.
+    fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
+        if x.len() < FEW {
+            for (value, &x) in values.iter_mut().zip(x) {
+                *value = self.sample(Vec3::new(x, y, z));
+            }
+            return;
+        }
+        let (mut places, mut found) = ([DVec3::ZERO; ROW], [0.0; ROW]);
+        for (x, values) in x.chunks(ROW).zip(values.chunks_mut(ROW)) {
+            for (place, &x) in places.iter_mut().zip(x) {
+                *place = self.place(Vec3::new(x, y, z));
+            }
+            self.values(&places[..x.len()], &mut found[..x.len()]);
+            for ((value, &x), &found) in values.iter_mut().zip(x).zip(&found) {
+                *value = self.rounded(Vec3::new(x, y, z), found);
+            }
+        }
     }
 
     /// No value is needed.

@@ -1,11 +1,26 @@
 //! Which spacings were chosen, in a sentence.
 
-use crate::words::list;
+use crate::words::{list, whole};
 use isostudy_design::config::Quantity;
 use isostudy_inference::Inputs;
 
+/// Captions name no more methods: the notes of tables do.
+const NAMED: usize = 3;
+
 /// Which methods have another spacing than their object, and why, in a sentence.
 pub(crate) fn budgets(inputs: &Inputs<'_>) -> Option<String> {
+    sentence(inputs, |methods| list(methods))
+}
+
+/// The same for a caption: of many methods, how many there are.
+pub(crate) fn in_short(inputs: &Inputs<'_>) -> Option<String> {
+    sentence(inputs, |methods| match methods.len() {
+        ..=NAMED => list(methods),
+        many => format!("{} methods", whole(many as u64)),
+    })
+}
+
+fn sentence(inputs: &Inputs<'_>, named: impl Fn(&[String]) -> String) -> Option<String> {
     // Those of one budget together, in the order of the first of each.
     let mut found: Vec<(String, Vec<String>)> = Vec::new();
     for method in &inputs.study.methods {
@@ -20,6 +35,6 @@ pub(crate) fn budgets(inputs: &Inputs<'_>) -> Option<String> {
             None => found.push((aim, vec![method.id.to_string()])),
         }
     }
-    let found: Vec<String> = found.iter().map(|(aim, methods)| format!("{} {aim}", list(methods))).collect();
+    let found: Vec<String> = found.iter().map(|(aim, methods)| format!("{} {aim}", named(methods))).collect();
     (!found.is_empty()).then(|| format!("Spacings were chosen for {}, object by object.", found.join("; ")))
 }

@@ -93,7 +93,7 @@ fn drafts(results: &Results<'_>, sheet: Sheet) -> Vec<Unfinished> {
         let found = " The table of methods says what the codes stand for.";
         drafts.iter_mut().for_each(|draft| draft.caption += found);
     }
-    if let Some(found) = crate::budgets::budgets(inputs) {
+    if let Some(found) = crate::budgets::in_short(inputs) {
         drafts.iter_mut().for_each(|draft| draft.caption += &format!(" {found}"));
     }
     if let Some(overview) = overview {

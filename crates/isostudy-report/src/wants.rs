@@ -13,9 +13,7 @@ pub(crate) const TIED: usize = 4;
 
 /// The words for a purpose.
 pub(crate) struct Words {
-    /// Names its column.
-    pub(crate) name: &'static str,
-    /// The column's heading.
+    /// Before a colon.
     pub(crate) heading: &'static str,
     /// Its number with its unit, `{}` for the number.
     pub(crate) unit: &'static str,
@@ -60,75 +58,61 @@ pub(crate) fn busy(inputs: &Inputs<'_>) -> Option<String> {
 
 /// What a purpose is called.
 pub(crate) fn words(goal: Goal) -> Words {
-    let [name, heading, unit, phrase, says] = match goal {
+    let [heading, unit, phrase, says] = match goal {
         Goal::Preferred => [
-            "preferred",
             "most liked",
             "{}",
             "the look that people like most",
             "worth {}, in log-odds above the mean of all methods",
         ],
-        Goal::Fastest => ["fastest", "shortest time", "{} ms", "the shortest time", "{} ms"],
-        Goal::Chunk => ["chunk", "shortest chunk", "{} ms", "the shortest time for a chunk", "{} ms"],
-        Goal::Edit => ["edit", "shortest edit", "{} ms", "the shortest time for an edit, in chunks", "{} ms"],
-        Goal::StoredFastest => [
-            "stored",
-            "shortest time from stored samples",
-            "{} ms",
-            "the shortest time from stored samples",
-            "{} ms",
-        ],
+        Goal::Fastest => ["shortest time", "{} ms", "the shortest time", "{} ms"],
+        Goal::Chunk => ["shortest chunk", "{} ms", "the shortest time for a chunk", "{} ms"],
+        Goal::Edit => ["shortest edit", "{} ms", "the shortest time for an edit, in chunks", "{} ms"],
+        Goal::StoredFastest => {
+            ["shortest time from stored samples", "{} ms", "the shortest time from stored samples", "{} ms"]
+        }
         Goal::StoredChunk => [
-            "stored_chunk",
             "shortest chunk from stored samples",
             "{} ms",
             "the shortest time for a chunk from stored samples",
             "{} ms",
         ],
         Goal::StoredEdit => [
-            "stored_edit",
             "shortest edit from stored samples",
             "{} ms",
             "the shortest time for an edit from stored samples",
             "{} ms",
         ],
-        Goal::Closest => ["closest", "smallest mean error", "{}", "the smallest mean error", "{} cube edges"],
+        Goal::Closest => ["smallest mean error", "{}", "the smallest mean error", "{} cube edges"],
         Goal::ClosestPerTriangle => [
-            "closest_per_triangle",
             "the same with as many triangles",
             "{}",
             "the smallest mean error with as many triangles",
             "{} cube edges",
         ],
-        Goal::SharpEdges => [
-            "edges",
-            "sharp edges kept",
-            "{}",
-            "sharp edges kept: the smallest mean error at them",
-            "{} cube edges",
-        ],
+        Goal::SharpEdges => {
+            ["sharp edges kept", "{}", "sharp edges kept: the smallest mean error at them", "{} cube edges"]
+        }
         Goal::Regular => {
-            ["regular", "most regular triangles", "{}", "the most regular triangles", "mean radius ratio {}"]
+            ["most regular triangles", "{}", "the most regular triangles", "mean radius ratio {}"]
         }
         Goal::Faultless => [
-            "faultless",
             "shortest time without a fault",
             "{} ms",
             "the shortest time to a manifold without intersections",
             "{} ms",
         ],
         Goal::Topology => [
-            "topology",
             "the same with the samples' topology",
             "{} ms",
             "the same with the topology of the interpolated samples",
             "{} ms",
         ],
     };
-    Words { name, heading, unit, phrase, says }
+    Words { heading, unit, phrase, says }
 }
 
-/// The heading of its column: where objects have regions, it says which part is judged.
+/// What stands before a colon: where objects have regions, it says which part is judged.
 pub(crate) fn heading(study: &Study, goal: Goal) -> String {
     with_part(words(goal).heading, study, goal)
 }

@@ -133,7 +133,9 @@ fn no_bound_is_much_too_large() {
     let greatest = DVec3::new(0.35, 0.475, 0.5);
     let step =
         |t: DVec3, corner: usize| t - DVec3::from_array([0, 1, 2].map(|axis| (corner >> axis & 1) as f64));
-    let cell = Cell { t: greatest.to_array(), gradients: std::array::from_fn(|c| best(step(greatest, c))) };
+    let lowest = [0.0; 3];
+    let gradients = std::array::from_fn(|c| best(step(greatest, c)));
+    let cell = Cell { lowest, t: greatest.to_array(), gradients };
     assert!((0.9995..=1.0).contains(&(cell.value() * SCALE)), "{}", cell.value());
 
     let (t, u) = (DVec3::splat(0.5), DVec3::X);
@@ -141,7 +143,7 @@ fn no_bound_is_much_too_large() {
         let sign = if corner & 1 == 1 { 1.0 } else { -1.0 };
         best(u / 8.0 + step(t, corner) * (sign * 1.875 / 4.0))
     });
-    let (_, gradient) = Cell { t: t.to_array(), gradients }.value_and_gradient();
+    let (_, gradient) = Cell { lowest, t: t.to_array(), gradients }.value_and_gradient();
     let share = gradient.length() * SCALE / NOISE_SLOPE;
     assert!((0.95..=1.0).contains(&share), "{share}");
 }
@@ -265,6 +267,35 @@ fn all_gradients_are_equally_frequent_whatever_the_neighbour_has() {
         // Chi-square with 143 degrees of freedom: 1 in 10^6 lies above 234.
         let chi: f64 = counts.iter().flatten().map(|&n| (f64::from(n) - 1000.0).powi(2) / 1000.0).sum();
         assert!(chi < 234.0, "{step:?}: {chi}");
+    }
+}
+
+/// Rows along an axis and askew, with many places in a cell and few; on lattice planes, at whole numbers, far out and at nothing.
+#[test]
+fn a_row_is_its_places_to_the_bit() {
+    let mut numbers = Numbers(6);
+    for seed in 0..3_000 {
+        let start = numbers.point(if seed % 7 == 0 { 1e-6 } else { 30.0 });
+        let length = [0.01, 0.3, 5.0][seed as usize % 3];
+        let step = numbers.point(length) * DVec3::new(1.0, (seed % 2) as f64, (seed / 2 % 2) as f64);
+        let start = if seed % 5 == 0 { DVec3::new(start.x, start.y, start.z.floor()) } else { start };
+        let mut places: Vec<DVec3> = (0..seed as usize % 90).map(|i| start + step * i as f64).collect();
+        for (i, p) in places.iter_mut().enumerate() {
+            *p = match numbers.next() {
+                ..0.02 => p.floor(),
+                ..0.03 => -*p * 0.0,
+                ..0.04 => DVec3::new(1e17, p.y, p.z),
+                ..0.05 => DVec3::new(p.x, f64::NAN, f64::INFINITY),
+                ..0.06 => *p - DVec3::splat(1e-17 * i as f64),
+                _ => *p,
+            };
+        }
+        let [x, y, z] = [0, 1, 2].map(|axis| places.iter().map(|p| p[axis]).collect::<Vec<f64>>());
+        let mut values = vec![f64::NAN; places.len()];
+        noise_row([&x, &y, &z], seed, &mut values);
+        for (p, value) in places.iter().zip(values) {
+            assert_eq!(value.to_bits(), noise(*p, seed).to_bits(), "{p} with the seed {seed}");
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::TerrainSettings;
-use crate::fractal::{Fractal, NoiseShape};
+use crate::fractal::{Fractal, NoiseShape, ROW};
 
 /// The part of a terrace's height that its riser takes of the way.
 const RISER: f64 = 0.2;
@@ -42,6 +42,27 @@ impl Relief {
             sum += centred(noise, noise.value(place)) * share;
         }
         self.ground + self.terraced(self.relief * sum)
+    }
+
+    /// The heights at `(x[i], y[i])` into `heights[i]`, each [`height`](Self::height) to the bit.
+    pub(super) fn heights(&self, x: &[f64], y: &[f64], heights: &mut [f64]) {
+        let count = heights.len();
+        let (mut places, mut found) = ([[0.0; ROW]; 3], [0.0; ROW]);
+        for (to, from) in places.iter_mut().zip([x, y]) {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = from / self.period;
+            }
+        }
+        heights.fill(0.0);
+        for (noise, share) in self.shared() {
+            noise.values(places.each_ref().map(|along| &along[..count]), &mut found[..count]);
+            for (sum, value) in heights.iter_mut().zip(&found) {
+                *sum += centred(noise, *value) * share;
+            }
+        }
+        for height in heights {
+            *height = self.ground + self.terraced(self.relief * *height);
+        }
     }
 
     /// The height, and how it changes along x and y.

@@ -178,4 +178,29 @@ proptest! {
             before = Some((p, value));
         }
     }
+
+    /// Rows of all lengths, with lattice steps and wild ones, and what is no place.
+    #[test]
+    fn a_row_is_its_samples_to_the_bit(
+        settings in settings(),
+        start in prop::array::uniform3(-1.5f32..1.5),
+        step in prop::sample::select(vec![0.0f32, 1e-4, 0.02, 0.3, 1e8]),
+        count in 0usize..200,
+        odd in prop::collection::vec((0usize..200, prop::sample::select(vec![f32::NAN, f32::INFINITY, -0.0])), 0..3),
+    ) {
+        let field = terrain(settings);
+        let [x0, y, z] = start;
+        let mut x: Vec<f32> = (0..count).map(|i| x0 + i as f32 * step).collect();
+        for (i, value) in odd {
+            if let Some(x) = x.get_mut(i) {
+                *x = value;
+            }
+        }
+        let mut values = vec![0.0; count];
+        field.sample_row(&x, y, z, &mut values);
+        for (&x, value) in x.iter().zip(values) {
+            let alone = field.sample(Vec3::new(x, y, z));
+            prop_assert_eq!(value.to_bits(), alone.to_bits(), "{} at x = {}", value, x);
+        }
+    }
 }

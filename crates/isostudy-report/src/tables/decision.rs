@@ -1,7 +1,7 @@
 //! Which method to take for what, and who is beaten in both time and error.
 
 use crate::region;
-use crate::wants::{TIED, busy, heading, judged, phrase, words};
+use crate::wants::{TIED, busy, judged, phrase, words};
 use crate::words::{list, whole};
 use isostudy_design::record::BenchRun;
 use isostudy_design::{MethodId, Study};
@@ -30,7 +30,7 @@ pub(super) fn tables(results: &Results<'_>) -> Vec<Table> {
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
 
-/// A row an object, a column a want: the best and its number.
+/// A row for each want, a column for each object: the best and its number. There are more wants than objects.
 fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick<'_>]) -> Table {
     let mut wants: Vec<Goal> = Vec::new();
     for pick in picks {
@@ -56,12 +56,9 @@ fn choices(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>], picks: &[&Pick
         };
         Cell::text(format!("{names}, {}", words(want).unit.replace("{}", &ranged(&[best.value.value]))))
     };
-    let rows = objects.iter().filter(|_| !wants.is_empty());
-    let mut table = Columns::over(rows)
-        .column("object", "On", |of| Cell::text(&of.object.name))
-        .columns_of(wants.iter().copied(), |all, want| {
-            all.column(words(want).name, heading(inputs.study, want), |of| cell(of, want))
-        })
+    let mut table = Columns::over(&wants)
+        .column("want", "You want", |want| Cell::text(phrase(inputs.study, **want)))
+        .columns_of(objects, |all, of| all.column(&of.object.id, &of.object.name, |want| cell(of, **want)))
         .into_table("choices", "The best method for each object and purpose");
     table.notes.push(
         "a = b: the two are not distinguished, so neither is the winner. The next table says what each choice costs. Empty: no method \
@@ -231,7 +228,7 @@ fn conditions(inputs: &Inputs<'_>, objects: &[ObjectCandidates<'_>]) -> Vec<Stri
         false => "",
     };
     notes.push(format!(
-        "{compared}Each column takes the best in its quantity, whatever else it costs. Not compared: {}.",
+        "{compared}Each row takes the best in its quantity, whatever else it costs. Not compared: {}.",
         list(&not)
     ));
     notes
