@@ -163,9 +163,10 @@ fn meshes(study: &Study) -> Vec<MeshRecord> {
     study.configurations.iter().map(mesh).collect()
 }
 
-/// What is printed: every table, and two lines of the abstract.
+/// What is printed: every table, two lines of the abstract, and the whole report.
 struct Printed {
     tables: Vec<Table>,
+    report: String,
     found: String,
     next: String,
 }
@@ -188,7 +189,7 @@ fn printed(study: &Study, meshes: &[MeshRecord], given: &[Given]) -> Printed {
     let line = |label: &str| {
         report.summary.iter().find(|line| line.label == label).expect("the abstract has it").text.clone()
     };
-    Printed { found: line("Found"), next: line("Next"), tables }
+    Printed { found: line("Found"), next: line("Next"), report: report.to_markdown(), tables }
 }
 
 impl Printed {
@@ -251,6 +252,11 @@ fn contradictions(study: &Study, truth: Truth, printed: &Printed) -> Vec<String>
     let favours = found.contains("People favour a side");
     let holds = printed.rows("contrasts").any(|row| row["verdict"].starts_with("holds"));
     fault(is_listed && favours && holds, "holds although a side may have made it");
+    // What a probe denies.
+    let denied = |question: &str| printed.report.contains(&format!("{question} Not found"));
+    let depends = found.contains("The preference depends on the object");
+    fault(depends && denied("Do preferences depend on the object?"), "objects matter, and do not");
+    fault(favours && denied("Is a side chosen whatever it shows?"), "people favour a side, and do not");
     // The most liked of each object.
     let names: Vec<&str> = study.file.objects.iter().map(|of| of.name.as_str()).collect();
     let rows: Vec<_> = printed.rows("likings").collect();

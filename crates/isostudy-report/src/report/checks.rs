@@ -8,7 +8,8 @@ use crate::statement::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{counted, list, numbers, of_all, p as p_value, people};
 use isostudy_inference::Preferences;
-use isostudy_inference::audit::{Evidence as Seen, Finding as Probed, Report};
+use isostudy_inference::audit::{ALARM, Evidence as Seen, Finding as Probed, Probe, Report};
+use isostudy_inference::conclusions::About;
 use isostudy_inference::hypotheses::Hypothesis;
 use isostudy_inference::screened::{Respondent, WithoutBreakers};
 use isostudy_statistics::{Flag, Screening};
@@ -24,7 +25,7 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
     }
     let without = preferences.screened.iter().filter(|of| !of.tests.is_empty());
     found.extend(without.map(|of| without_breakers(evidence, of)));
-    found.extend(preferences.audit.iter().map(probed));
+    found.extend(preferences.audit.iter().map(|report| probed(preferences, report)));
     found.extend(screens::finding(&preferences.screens, evidence.rules().level));
     found.into_iter().map(Block::Finding).collect()
 }
@@ -180,15 +181,25 @@ fn without_breakers(evidence: &Evidence<'_>, of: &WithoutBreakers) -> Finding {
     Finding::new(Standing::Noted, format!("{who}: without them, {outcome}.{parts}"))
 }
 
-/// What a probe found.
-fn probed(report: &Report) -> Finding {
+/// What a probe found. One that found nothing says at which level, since contrasts have another.
+fn probed(preferences: &Preferences<'_>, report: &Report) -> Finding {
     let Report { probe, finding, p, evidence } = report;
     let question = probe.question();
     if let Seen::NotAnswerable(why) = evidence {
         let text = format!("{question} Not answerable here, because {}.", evidence_of_probes::reason(why));
         return Finding::new(Standing::NotAnswerable, text);
     }
-    let word = if *finding == Probed::Found { "Found" } else { "Not found" };
+    let depends = || preferences.conclusions.all.iter().any(|of| matches!(of.about, About::Object(_)));
+    let word = match finding {
+        Probed::Found => "Found".into(),
+        _ if p.is_none() => "Not found".into(),
+        _ if *probe == Probe::ObjectInteraction && depends() => {
+            format!(
+                "The contrasts above say that they do. No comparison alone shows it at the level of {ALARM}"
+            )
+        }
+        _ => format!("Not found at the level of {ALARM}"),
+    };
     let p = p.map_or(String::new(), |p| format!(" ({})", p_value(p)));
     Finding::new(
         Standing::Noted,

@@ -181,9 +181,9 @@ fn favourite(study: &Study, tally: &Tally, factors: &[GroupFactor]) -> Option<St
     };
     let by_object = match &objects[..] {
         [(best, _)] if *best == methods => {
-            format!("{} {} it on each object as well", together(best), verb(best))
+            format!("on each object {} {} it as well", together(best), verb(best))
         }
-        [(best, _)] => format!("{} {} it on each object", together(best), verb(best)),
+        [(best, _)] => format!("on each object {} {} it", together(best), verb(best)),
         _ => {
             let parts: Vec<String> =
                 objects.iter().map(|(m, names)| format!("{} on the {}", together(m), list(names))).collect();

@@ -177,13 +177,15 @@ fn next(evidence: &Evidence<'_>) -> String {
     if undecided > 0 && evidence.study.is_none() {
         let (contrasts, stay) =
             (capital(&counted(undecided, "contrast")), if undecided == 1 { "stays" } else { "stay" });
-        return format!("{contrasts} {stay} undecided: more people may decide them.");
+        let them = if undecided == 1 { "it" } else { "them" };
+        return format!("{contrasts} {stay} undecided: more people may decide {them}.");
     }
     if undecided > 0 {
         return format!(
-            "{} {} undecided: isostudy design power says how many people would decide them.",
+            "{} {} undecided: isostudy design power says how many people would decide {}.",
             capital(&counted(undecided, "contrast")),
-            if undecided == 1 { "stays" } else { "stay" }
+            if undecided == 1 { "stays" } else { "stay" },
+            if undecided == 1 { "it" } else { "them" }
         );
     }
     "Ask about other objects: these results are about the ones that were shown.".into()
