@@ -14,9 +14,6 @@ use isostudy_design::record::{MeshRecord, Purpose};
 use isostudy_design::{Configuration, ConfigurationId};
 use isostudy_extract::{Execution, Extractor};
 use isostudy_mesh::TriangleMesh;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-use std::thread;
 
 /// How far a mesh moves the bar, which moves while one is extracted: a large volume takes minutes.
 pub(super) const TICKS_A_MESH: usize = 1000;
@@ -62,26 +59,26 @@ impl Pipeline<'_> {
         let (mut entries, mut reached) = (Vec::new(), 0);
         // Object by object: what is found of an isosurface serves all of its meshes.
         for object in 0..self.study.file.objects.len() {
-            for &purpose in purposes {
+            let of_object = || selected.iter().filter(move |configuration| configuration.object == object);
+            for (&purpose, configuration) in
+                purposes.iter().flat_map(|purpose| of_object().map(move |of| (purpose, of)))
+            {
+                reached += TICKS_A_MESH;
                 // What a program did once it does again.
-                let is_of_object = |of: &&&Configuration| of.object == object && !self.has_failed(&of.id);
-                let of_object: Vec<&Configuration> = selected.iter().filter(is_of_object).copied().collect();
-                let all = selected.iter().filter(|of| of.object == object).count();
-                (of_object.len()..all).for_each(|_| step.count_failed());
-                let stamps = side_by_side(self.threads, &of_object, |of| self.mesh(of, purpose, &step));
-                for (configuration, stamp) in of_object.into_iter().zip(stamps) {
-                    match stamp {
-                        Ok(stamp) => {
-                            step.count(stamp.redone);
-                            entries.push((configuration.id.clone(), purpose, stamp));
-                        }
-                        Err(error) => {
-                            self.fail(&configuration.id, error)?;
-                            step.count_failed();
-                        }
+                if self.has_failed(&configuration.id) {
+                    step.count_failed();
+                    continue;
+                }
+                match self.mesh(configuration, purpose, &step) {
+                    Ok(stamp) => {
+                        step.count(stamp.redone);
+                        entries.push((configuration.id.clone(), purpose, stamp));
+                    }
+                    Err(error) => {
+                        self.fail(&configuration.id, error)?;
+                        step.count_failed();
                     }
                 }
-                reached += all * TICKS_A_MESH;
                 step.reach(reached);
             }
         }
@@ -179,34 +176,6 @@ impl Pipeline<'_> {
         let bytes = input::bytes(&self.store.root().join(file))?;
         isostudy_mesh::read_ply(bytes.as_slice()).with_context(|| file.to_owned())
     }
-}
-
-/// What is made of each item, in their order. Two are made at a time where there are threads: a mesh is extracted on one thread, and
-/// measured on all. These are no threads of a pool, which would begin another mesh while one waits for the measures of an object.
-pub(super) fn side_by_side<T: Sync, R: Send>(
-    threads: usize,
-    items: &[T],
-    make: impl Fn(&T) -> R + Sync,
-) -> Vec<R> {
-    let (next, made) = (AtomicUsize::new(0), Mutex::new(Vec::with_capacity(items.len())));
-    let work = || {
-        while let Some((place, item)) = {
-            let place = next.fetch_add(1, Ordering::Relaxed);
-            items.get(place).map(|item| (place, item))
-        } {
-            let of_item = make(item);
-            made.lock().unwrap_or_else(PoisonError::into_inner).push((place, of_item));
-        }
-    };
-    thread::scope(|scope| {
-        if threads > 1 && items.len() > 1 {
-            scope.spawn(work);
-        }
-        work();
-    });
-    let mut made = made.into_inner().unwrap_or_else(PoisonError::into_inner);
-    made.sort_unstable_by_key(|(place, _)| *place);
-    made.into_iter().map(|(_, of_item)| of_item).collect()
 }
 
 pub(super) fn purpose_name(purpose: Purpose) -> &'static str {

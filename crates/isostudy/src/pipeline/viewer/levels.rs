@@ -2,7 +2,7 @@
 
 use crate::input;
 use crate::made::{Made, program_error};
-use crate::pipeline::meshes::{TICKS_A_MESH, side_by_side};
+use crate::pipeline::meshes::TICKS_A_MESH;
 use crate::pipeline::{Meshes, Pipeline};
 use crate::prepare::{Prepared, Wanted};
 use crate::recipe::Recipe;
@@ -61,18 +61,13 @@ impl Pipeline<'_> {
         let count = selected.len() * factors.len();
         let step = Step::begin("viewer meshes", count, count * TICKS_A_MESH);
         let mut levels = Vec::new();
-        for object in 0..self.study.file.objects.len() {
-            let of_object = selected.iter().filter(|of| of.object == object);
-            let wanted: Vec<(&Configuration, f64)> =
-                of_object.flat_map(|of| factors.iter().map(|&factor| (*of, factor))).collect();
-            for level in
-                side_by_side(self.threads, &wanted, |&(of, factor)| self.level(of, factor, meshes, &step))
-            {
-                let level = level?;
+        for configuration in selected {
+            for &factor in factors {
+                let level = self.level(configuration, factor, meshes, &step)?;
                 step.count(level.stamp.redone);
                 levels.push(level);
+                step.reach(levels.len() * TICKS_A_MESH);
             }
-            step.reach(levels.len() * TICKS_A_MESH);
         }
         step.end();
         Ok(levels)
