@@ -15,7 +15,7 @@ use isostudy_mesh::Bounds;
 
 use self::bricks::{Bricks, Near, Reader, Samples};
 pub use self::grid::VolumeGrid;
-use self::ranges::{Ranges, Scan};
+use self::ranges::{EDGES, Ranges, Scan, Scanned};
 pub use self::stored::{StoredSamples, UnreadSamples};
 use super::{SAFE, StudyField};
 
@@ -105,11 +105,6 @@ impl From<UnreadSamples> for VolumeFieldError {
     }
 }
 
-/// Steps along the edge of the smallest brick whose range is kept, of samples in memory: the fewest samples are taken between the bricks.
-const RANGES_IN_MEMORY: usize = 4;
-/// The same of stored samples, which there is little memory for.
-const RANGES_OF_STORED: usize = 8;
-
 /// Samples on a regular grid with an interpolated value between them: trilinear, in single precision, continuous, and
 /// at a sample the sample. Inside is what is brighter than the isovalue.
 ///
@@ -154,14 +149,17 @@ impl VolumeField {
             return Err(VolumeFieldError::Counts { counts, samples: values.len() });
         }
         let grid = VolumeGrid::try_new(counts, origin, steps)?;
-        let mut scan = Scan::new(counts, RANGES_IN_MEMORY)?;
+        let mut scan = Scan::new(counts, EDGES[0])?;
         values.chunks_exact(counts[0] * counts[1]).for_each(|layer| scan.add(layer));
-        let (ranges, value_range) = scan.finish()?;
+        let (ranges, value_range) = Scanned::ranges(counts, EDGES[0], [scan.finish()])?;
         Self::of(grid, Samples::Whole(Arc::new(values)), beyond, value_range, ranges)
     }
 
-    /// A field of samples that are not in memory. They are read once, layer by layer, for the range of each block. From then on no more
-    /// than `memory_bytes` of them are kept, or a brick of 17 samples a side; [`VolumeGrid::stored_bytes`] says what all takes.
+    /// A field of samples that are not in memory. They are read once, layer by layer on so many `threads`, for the range of each block. From
+    /// then on bricks of them are read where they are wanted.
+    ///
+    /// Bricks that are kept take half of `memory_bytes`, or what one of 17 samples a side takes. Ranges take the other half at most; where
+    /// they would take more, they are those of larger blocks, and more samples are taken between. [`VolumeGrid::stored_bytes`] says it all.
     ///
     /// # Errors
     /// [`VolumeFieldError`].
@@ -171,21 +169,27 @@ impl VolumeField {
         steps: [[f64; 3]; 3],
         beyond: Beyond,
         memory_bytes: u64,
+        threads: usize,
     ) -> Result<Self, VolumeFieldError> {
         let counts = samples.counts();
         let grid = VolumeGrid::try_new(counts, origin, steps)?;
-        let mut scan = Scan::new(counts, RANGES_OF_STORED)?;
-        let [nx, ny, layers] = counts;
-        let mut layer = Vec::new();
-        layer.try_reserve_exact(nx * ny)?;
-        layer.resize(nx * ny, 0.0);
-        for z in 0..layers {
-            samples.read_box([0, 0, z], [nx, ny, 1], &mut layer)?;
-            scan.add(&layer);
-        }
-        drop(layer);
-        let (ranges, value_range) = scan.finish()?;
-        let bricks = Bricks::new(samples, memory_bytes)?;
+        let edge = Ranges::edge_within(counts, memory_bytes / 2);
+        let layers = Ranges::layers(counts, edge);
+        let threads = threads.clamp(1, layers);
+        let scan = |part: usize| {
+            let [first, end] = [part, part + 1].map(|part| part * layers / threads * edge);
+            scan_layers(&*samples, edge, first, (end + 1).min(counts[2]))
+        };
+        let parts = std::thread::scope(|scope| {
+            let others: Vec<_> = (1..threads).map(|part| scope.spawn(move || scan(part))).collect();
+            let first = std::iter::once(scan(0));
+            let join = |thread: std::thread::ScopedJoinHandle<'_, _>| {
+                thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+            };
+            first.chain(others.into_iter().map(join)).collect::<Result<Vec<_>, VolumeFieldError>>()
+        })?;
+        let (ranges, value_range) = Scanned::ranges(counts, edge, parts)?;
+        let bricks = Bricks::new(samples, memory_bytes / 2)?;
         Self::of(grid, Samples::Stored(Arc::new(bricks)), beyond, value_range, ranges)
     }
 
@@ -339,6 +343,25 @@ impl VolumeField {
         let value = self.value(p, |index| self.interpolated(reader, index));
         if value.is_finite() { value } else { self.value_with_care(reader, p) }
     }
+}
+
+/// Reads the layers of samples from `first` to before `end`, and finds the ranges of the bricks between.
+fn scan_layers(
+    samples: &dyn StoredSamples,
+    edge: usize,
+    first: usize,
+    end: usize,
+) -> Result<Scanned, VolumeFieldError> {
+    let [nx, ny, _] = samples.counts();
+    let mut scan = Scan::new([nx, ny, end - first], edge)?;
+    let mut layer = Vec::new();
+    layer.try_reserve_exact(nx * ny)?;
+    layer.resize(nx * ny, 0.0);
+    for z in first..end {
+        samples.read_box([0, 0, z], [nx, ny, 1], &mut layer)?;
+        scan.add(&layer);
+    }
+    Ok(scan.finish())
 }
 
 impl StudyField for VolumeField {

@@ -20,22 +20,24 @@ pub(crate) enum Parts {
 }
 
 /// A volume that is to stay in its file.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub(crate) struct InFile {
     pub(crate) held: OfVolume,
     /// On no more threads than there is memory for.
     pub(crate) execution: Execution,
+    /// What is said once the file is open.
+    said: String,
 }
 
-/// How many of the bytes that there are, are for bricks.
-const SHARE_OF_BRICKS: u64 = 8;
+/// The share of what there is that a field may take of a volume in a file: bricks of its samples, and their ranges.
+const SHARE_OF_FIELD: u64 = 3;
 
-/// How many bytes bricks may take.
-pub(crate) fn brick_bytes(limit: Limit) -> u64 {
-    limit.bytes / SHARE_OF_BRICKS
+/// How many bytes that is.
+pub(crate) fn field_bytes(limit: Limit) -> u64 {
+    limit.bytes / SHARE_OF_FIELD
 }
 
-/// Whether a volume has to stay in its file for a method's mesh, since not all of its samples fit; it is said then. `whole` is what they take
+/// Whether a volume has to stay in its file for a method's mesh, since not all of its samples fit. `whole` is what they take
 /// with what is kept beside them, and `in_file` what is kept of such parts.
 ///
 /// # Errors
@@ -79,13 +81,13 @@ pub(crate) fn stays_in_file(
         Parts::Layers => "layers",
         Parts::Bricks => "bricks",
     };
-    tell_once(&format!(
-        "{}: its samples need {} of memory, and {}: {what} of them are read from the file{on}",
+    let said = format!(
+        "{}: with all samples in memory, {} are needed, and {}: {what} of them are read from the file{on}",
         unread.path().display(),
         amount(of_whole.total(), f64::ceil),
         limit.allowed(),
-    ));
-    Ok(Some(InFile { held: in_file, execution }))
+    );
+    Ok(Some(InFile { held: in_file, execution, said }))
 }
 
 /// What is said of a method that has all of the lattice in memory.
@@ -114,12 +116,14 @@ pub(crate) struct FileSamples {
 }
 
 impl FileSamples {
-    /// Opens the file.
+    /// Opens the file, and says so.
     ///
     /// # Errors
     /// If it is not there, or not as long as its header says.
-    pub(crate) fn open(unread: Unread) -> Result<Self> {
-        Ok(Self { stored: unread.stored()?, fault: OnceLock::new() })
+    pub(crate) fn open(unread: Unread, of: &InFile) -> Result<Self> {
+        let stored = unread.stored()?;
+        tell_once(&of.said);
+        Ok(Self { stored, fault: OnceLock::new() })
     }
 
     /// What is made of the samples, if all of them could be read.

@@ -1,6 +1,6 @@
 //! Where a surface comes from: a formula, a volume or a mesh; and where it is looked at.
 
-use crate::file_samples::{FileSamples, InFile, Parts, brick_bytes, stays_in_file};
+use crate::file_samples::{FileSamples, Parts, field_bytes, stays_in_file};
 use crate::memory::{Limit, OfVolume};
 use crate::mesh_file;
 use crate::place::place;
@@ -179,9 +179,10 @@ impl Options {
                 let field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued);
                 (field.with_context(name)?, whole, None)
             }
-            Some(InFile { held, execution }) => {
-                let samples = Arc::new(FileSamples::open(unread)?);
-                let field = self.of_file_samples(&samples, origin, steps, &name())?;
+            Some(in_file) => {
+                let samples = Arc::new(FileSamples::open(unread, &in_file)?);
+                let (held, execution) = (in_file.held, in_file.execution);
+                let field = self.of_file_samples(&samples, (origin, steps), &execution, &name())?;
                 (field, held, Some((samples, execution)))
             }
         };
@@ -201,12 +202,12 @@ impl Options {
     fn of_file_samples(
         &self,
         samples: &Arc<FileSamples>,
-        origin: [f64; 3],
-        steps: [[f64; 3]; 3],
+        (origin, steps): ([f64; 3], [[f64; 3]; 3]),
+        execution: &Execution,
         name: &str,
     ) -> Result<VolumeField> {
-        let (of, bytes) = (Arc::clone(samples), brick_bytes(self.limit));
-        let field = VolumeField::try_stored(of, origin, steps, Beyond::Continued, bytes);
+        let (of, bytes) = (Arc::clone(samples), field_bytes(self.limit));
+        let field = VolumeField::try_stored(of, origin, steps, Beyond::Continued, bytes, execution.threads);
         samples.vouch(field.with_context(|| name.to_owned()))
     }
 
@@ -278,11 +279,12 @@ impl Options {
         &self,
         samples: &Arc<FileSamples>,
         frame: &Frame,
+        execution: &Execution,
         name: &str,
     ) -> Result<OwnCells> {
-        let field = self.of_file_samples(samples, frame.origin, frame.steps, name)?;
+        let field = self.of_file_samples(samples, (frame.origin, frame.steps), execution, name)?;
         let mut own = self.of_own_field(field, frame.steps, name);
-        own.source.in_file = Some((Arc::clone(samples), Execution::default()));
+        own.source.in_file = Some((Arc::clone(samples), *execution));
         Ok(own)
     }
 
@@ -320,7 +322,7 @@ pub(crate) fn held_as_a_field(unread: &Unread) -> OfVolume {
 
 /// What a volume that stays in its file takes as a field: bricks of its samples, and their ranges.
 fn held_in_bricks(unread: &Unread, grid: &VolumeGrid, limit: Limit) -> OfVolume {
-    let [bricks, ranges] = grid.stored_bytes(brick_bytes(limit));
+    let [bricks, ranges] = grid.stored_bytes(field_bytes(limit));
     OfVolume::in_file(unread, bricks).with("the ranges of their bricks", ranges)
 }
 

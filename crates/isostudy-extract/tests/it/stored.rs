@@ -175,7 +175,7 @@ fn random_volumes(seeds: std::ops::Range<u64>) {
         let stored = Arc::new(Elsewhere::new(counts, values));
         let whole = VolumeField::try_new(counts, values.clone(), origin, steps, Beyond::Continued);
         // Room for one brick.
-        let of_stored = VolumeField::try_stored(stored.clone(), origin, steps, Beyond::Continued, 0);
+        let of_stored = VolumeField::try_stored(stored.clone(), origin, steps, Beyond::Continued, 0, 1);
         assert_eq!(whole.as_ref().err(), of_stored.as_ref().err(), "{seed}");
         for preset in presets() {
             let what = format!("{} of the volume {seed}", preset.id);

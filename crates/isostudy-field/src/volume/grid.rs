@@ -3,9 +3,9 @@
 use glam::{DMat3, DVec3};
 use isostudy_mesh::Bounds;
 
+use super::VolumeFieldError;
 use super::bricks::Bricks;
-use super::ranges::Ranges;
-use super::{RANGES_IN_MEMORY, RANGES_OF_STORED, VolumeFieldError};
+use super::ranges::{EDGES, Ranges};
 
 /// A regular grid of samples: all that can be said of a volume before its samples are there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,12 +84,14 @@ impl VolumeGrid {
 
     /// Bytes that a [`VolumeField`](super::VolumeField) keeps beside samples in memory: the ranges of their bricks.
     pub fn range_bytes(&self) -> u64 {
-        Ranges::bytes(self.counts, RANGES_IN_MEMORY)
+        Ranges::bytes(self.counts, EDGES[0])
     }
 
     /// Bytes that a field of samples that are [not in memory](super::VolumeField::try_stored) keeps, which was given `memory_bytes`: bricks of
     /// samples, and their ranges.
     pub fn stored_bytes(&self, memory_bytes: u64) -> [u64; 2] {
-        [Bricks::bytes(self.counts, memory_bytes), Ranges::bytes(self.counts, RANGES_OF_STORED)]
+        let half = memory_bytes / 2;
+        let ranges = Ranges::bytes(self.counts, Ranges::edge_within(self.counts, half));
+        [Bricks::bytes(self.counts, half), ranges]
     }
 }

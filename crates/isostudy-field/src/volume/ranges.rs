@@ -2,6 +2,8 @@
 
 use std::collections::TryReserveError;
 
+/// Steps from sample to sample along the edge of the smallest brick. The smaller it is, the fewer samples are taken between.
+pub(super) const EDGES: [usize; 4] = [4, 8, 16, 32];
 /// Beyond this, differences may overflow, and interpolation makes what is not in the range of its samples.
 const LARGEST: f32 = 1e37;
 
@@ -26,6 +28,17 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
+    /// The smallest edge whose ranges take no more than so many bytes, up to [`EDGES`]' last.
+    pub(super) fn edge_within(counts: [usize; 3], bytes: u64) -> usize {
+        let fits = EDGES.into_iter().find(|&edge| Self::bytes(counts, edge) <= bytes);
+        fits.unwrap_or(EDGES[EDGES.len() - 1])
+    }
+
+    /// How many layers of the smallest bricks there are.
+    pub(super) fn layers(counts: [usize; 3], edge: usize) -> usize {
+        bricks_over(counts, edge)[2]
+    }
+
     /// What those of so many samples take.
     pub(super) fn bytes(counts: [usize; 3], edge: usize) -> u64 {
         let mut bricks = bricks_over(counts, edge);
@@ -145,14 +158,44 @@ impl Scan {
         self.greatest.fill(EMPTY[1]);
     }
 
-    /// The ranges, and the least and the greatest finite sample, after the last layer; the least is the greater one if none is finite.
-    pub(super) fn finish(self) -> Result<(Ranges, (f32, f32)), TryReserveError> {
+    /// What was found, after the last layer.
+    pub(super) fn finish(self) -> Scanned {
         assert_eq!(self.layers, self.counts[2], "layers");
-        let mut levels = vec![Level { counts: self.bricks, bricks: self.found }];
+        Scanned { bricks: self.found, finite: self.finite }
+    }
+}
+
+/// The ranges of the smallest bricks of a volume, or of some layers of them.
+#[derive(Debug)]
+pub(super) struct Scanned {
+    bricks: Vec<Range>,
+    finite: (f32, f32),
+}
+
+impl Scanned {
+    /// Those of all layers, which parts have found one after the other from the lowest; and the least and the greatest finite sample, where
+    /// the least is the greater one if none is finite.
+    pub(super) fn ranges(
+        counts: [usize; 3],
+        edge: usize,
+        parts: impl IntoIterator<Item = Self>,
+    ) -> Result<(Ranges, (f32, f32)), TryReserveError> {
+        let mut all = Self { bricks: Vec::new(), finite: EMPTY.into() };
+        for part in parts {
+            all.finite = either(all.finite, part.finite);
+            if all.bricks.is_empty() {
+                all.bricks = part.bricks;
+                continue;
+            }
+            all.bricks.try_reserve_exact(part.bricks.len())?;
+            all.bricks.extend(part.bricks);
+        }
+        let mut levels = vec![Level { counts: bricks_over(counts, edge), bricks: all.bricks }];
+        assert_eq!(levels[0].bricks.len(), levels[0].counts.iter().product::<usize>(), "bricks");
         while levels[levels.len() - 1].counts != [1; 3] {
             levels.push(levels[levels.len() - 1].halved()?);
         }
-        Ok((Ranges { edge: self.edge, levels }, self.finite))
+        Ok((Ranges { edge, levels }, all.finite))
     }
 }
 
@@ -242,7 +285,7 @@ mod tests {
     fn scanned(counts: [usize; 3], edge: usize, samples: &[f32]) -> (Ranges, (f32, f32)) {
         let mut scan = Scan::new(counts, edge).unwrap();
         samples.chunks_exact(counts[0] * counts[1]).for_each(|layer| scan.add(layer));
-        scan.finish().unwrap()
+        Scanned::ranges(counts, edge, [scan.finish()]).unwrap()
     }
 
     /// The bricks of each level by their definition: all samples from one end to the other, both included.

@@ -79,7 +79,7 @@ const FRAMES: [[[f64; 3]; 3]; 4] = [
 
 const ORIGIN: [f64; 3] = [-3.5, 2.0, 0.25];
 
-/// The same field of samples in memory and elsewhere, of which so many bytes are kept.
+/// The same field of samples in memory and elsewhere, of which so many bytes are kept, and as many of ranges.
 fn both(
     counts: [usize; 3],
     values: &[f32],
@@ -89,7 +89,7 @@ fn both(
 ) -> (VolumeField, VolumeField, Arc<Elsewhere>) {
     let whole = VolumeField::try_new(counts, values.to_vec(), ORIGIN, steps, beyond).unwrap();
     let elsewhere = Elsewhere::new(counts, values.to_vec());
-    let stored = VolumeField::try_stored(elsewhere.clone(), ORIGIN, steps, beyond, bytes).unwrap();
+    let stored = VolumeField::try_stored(elsewhere.clone(), ORIGIN, steps, beyond, 2 * bytes, 2).unwrap();
     (whole, stored, elsewhere)
 }
 
@@ -157,22 +157,29 @@ fn values_are_those_of_samples_in_memory() {
     }
 }
 
-/// What is said of a box holds for all that is in it.
+/// Boxes of a volume, some of which reach beyond it.
+fn boxes(counts: [usize; 3], steps: [[f64; 3]; 3], count: usize) -> Vec<Bounds> {
+    let mut numbers = Numbers(4);
+    let of = |corner: Vec3| {
+        let size = Vec3::from_array([(); 3].map(|()| 12.0 * numbers.share() as f32));
+        Bounds { min: corner, max: corner + size }
+    };
+    points(counts, steps, count, 8).into_iter().map(of).collect()
+}
+
+/// What is said of a box holds for all that is in it, in whatever memory.
 #[test]
 fn ranges_hold_the_values() {
     let counts = [50, 40, 30];
     let values = samples(counts, 9, false);
-    for steps in FRAMES {
-        let (_, stored, _) = both(counts, &values, steps, Beyond::Falling, 0);
+    for (steps, bytes) in FRAMES.into_iter().zip([0, 500, 2000, 1 << 20]) {
+        let (_, stored, _) = both(counts, &values, steps, Beyond::Falling, bytes);
         let mut numbers = Numbers(4);
-        let corners = points(counts, steps, 200, 8);
-        for &corner in &corners {
-            let size = Vec3::from_array([(); 3].map(|()| 12.0 * numbers.share() as f32));
-            let bounds = Bounds { min: corner, max: corner + size };
+        for bounds in boxes(counts, steps, 200) {
             let (low, high) = stored.range(bounds, f32::NAN).unwrap();
             for _ in 0..30 {
                 let share = Vec3::from_array([(); 3].map(|()| numbers.share() as f32));
-                let value = stored.sample(bounds.min + size * share);
+                let value = stored.sample(bounds.min + bounds.size() * share);
                 assert!(low <= value && value <= high, "{bounds:?}: {value} from {low} to {high}");
             }
         }
@@ -180,11 +187,48 @@ fn ranges_hold_the_values() {
     // And says so much that what is empty is not looked into.
     let mut flat = vec![0.0; counts.iter().product()];
     flat[0] = 1.0;
-    let (_, stored, elsewhere) = both(counts, &flat, FRAMES[0], Beyond::Continued, 0);
+    let (_, stored, elsewhere) = both(counts, &flat, FRAMES[0], Beyond::Continued, 1 << 20);
     let at = |x: f32| Vec3::from_array(ORIGIN.map(|o| o as f32 + x));
-    assert_eq!(stored.range(Bounds { min: at(8.5), max: at(29.0) }, f32::NAN), Some((0.0, 0.0)));
-    assert!(stored.range(Bounds { min: at(7.5), max: at(29.0) }, f32::NAN).unwrap().1 >= 1.0);
-    assert_eq!(elsewhere.boxes.load(Ordering::Relaxed), 30, "a layer at a time, once");
+    assert_eq!(stored.range(Bounds { min: at(4.5), max: at(12.5) }, f32::NAN), Some((0.0, 0.0)));
+    assert!(stored.range(Bounds { min: at(3.5), max: at(11.5) }, f32::NAN).unwrap().1 >= 1.0);
+    assert_eq!(elsewhere.boxes.load(Ordering::Relaxed), 31, "layers at a time, one of them for both threads");
+}
+
+/// With room for them the ranges are those of samples in memory, whatever the number of threads that find them.
+#[test]
+fn ranges_are_those_of_samples_in_memory() {
+    for (counts, threads) in [([50, 40, 30], 1), ([9, 40, 31], 2), ([7, 50, 33], 3), ([20, 20, 9], 7)] {
+        for odd in [false, true] {
+            let values = samples(counts, 9, odd);
+            for steps in FRAMES {
+                let elsewhere = Elsewhere::new(counts, values.clone());
+                let whole =
+                    VolumeField::try_new(counts, values.clone(), ORIGIN, steps, Beyond::Falling).unwrap();
+                let stored =
+                    VolumeField::try_stored(elsewhere, ORIGIN, steps, Beyond::Falling, 1 << 20, threads)
+                        .unwrap();
+                for bounds in boxes(counts, steps, 300) {
+                    let [a, b] = [&whole, &stored].map(|field| field.range(bounds, f32::NAN));
+                    assert_eq!(a, b, "{counts:?} {odd} {threads} {bounds:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Of little memory ranges are those of larger blocks.
+#[test]
+fn ranges_take_no_more_than_half_of_the_memory() {
+    let grid = VolumeField::try_new([2; 3], vec![0.0; 8], ORIGIN, FRAMES[0], Beyond::Continued).unwrap();
+    assert_eq!(grid.grid().stored_bytes(1 << 20), [32, 8]);
+    let grid = |counts| isostudy_field::VolumeGrid::try_new(counts, ORIGIN, FRAMES[0]).unwrap();
+    let large = grid([2048; 3]);
+    for (memory, edge) in [(4u64 << 30, 4), (2 << 30, 8), (100 << 20, 16), (50 << 20, 16), (10 << 20, 32)] {
+        let [bricks, ranges] = large.stored_bytes(memory);
+        let smallest = 8 * (2048u64 / edge).pow(3);
+        assert!((smallest..smallest * 8 / 7 + 8 * 64).contains(&ranges), "{memory}: {ranges}");
+        assert!(bricks <= memory / 2 && bricks > memory / 2 - (17 * 17 * 17 * 4 * 8), "{memory}: {bricks}");
+    }
 }
 
 #[test]
@@ -220,13 +264,13 @@ fn bricks_are_read_again_only_when_others_took_their_place() {
     let read = |bytes: u64, order: &dyn Fn(usize) -> usize| {
         let (_, stored, elsewhere) = both(counts, &values, FRAMES[0], Beyond::Continued, bytes);
         let before = elsewhere.boxes.load(Ordering::Relaxed);
-        assert_eq!(before, 65);
+        assert_eq!(before, 66, "one of the layers for both threads");
         for i in 0..640 {
             let brick = order(i);
             let at = [brick % 4, brick / 4 % 4, brick / 16].map(|b| 16.0 * b as f32 + 3.5);
             stored.sample(Vec3::from_array(ORIGIN.map(|o| o as f32)) + Vec3::from_array(at));
         }
-        (elsewhere.boxes.load(Ordering::Relaxed) - before, stored.grid().stored_bytes(bytes)[0])
+        (elsewhere.boxes.load(Ordering::Relaxed) - before, stored.grid().stored_bytes(2 * bytes)[0])
     };
     // One after the other: each once, whatever there is room for.
     for bytes in [0, brick, 20 * brick, 1 << 30] {
@@ -252,7 +296,7 @@ fn what_cannot_be_read_is_an_error_or_no_number() {
     elsewhere.is_gone.store(true, Ordering::Relaxed);
     let at = Vec3::from_array(ORIGIN.map(|o| o as f32 + 3.5));
     assert!(stored.sample(at).is_nan());
-    let error = VolumeField::try_stored(elsewhere, ORIGIN, FRAMES[0], Beyond::Continued, 0).unwrap_err();
+    let error = VolumeField::try_stored(elsewhere, ORIGIN, FRAMES[0], Beyond::Continued, 0, 1).unwrap_err();
     assert_eq!(error, VolumeFieldError::Unread(UnreadSamples("gone at [0, 0, 0]".into())));
     assert_eq!(error.to_string(), "gone at [0, 0, 0]");
 }
@@ -261,7 +305,7 @@ fn what_cannot_be_read_is_an_error_or_no_number() {
 fn stored_samples_are_refused_as_those_in_memory() {
     let make = |counts: [usize; 3], value: f32, steps| {
         let elsewhere = Elsewhere::new(counts, vec![value; counts.iter().product()]);
-        VolumeField::try_stored(elsewhere, ORIGIN, steps, Beyond::Continued, 0).map(|_| ()).unwrap_err()
+        VolumeField::try_stored(elsewhere, ORIGIN, steps, Beyond::Continued, 0, 1).map(|_| ()).unwrap_err()
     };
     assert_eq!(make([4, 1, 4], 0.0, FRAMES[0]), VolumeFieldError::Flat { counts: [4, 1, 4] });
     assert!(matches!(make([4, 0, 4], 0.0, FRAMES[0]), VolumeFieldError::Counts { .. }));

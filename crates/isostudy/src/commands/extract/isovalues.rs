@@ -189,10 +189,9 @@ impl Sweep<'_> {
             let grid = VolumeCells { counts, values: &[], origin, steps }.grid();
             let both = (held, OfVolume::in_file(&unread, 0));
             let asked = (&method, &grid, &self.execution);
-            if let Some(InFile { execution, .. }) =
-                stays_in_file(limit, &unread, both, Parts::Layers, asked).with_context(name)?
-            {
-                return self.on_own_cells_in_file(unread, &method, &execution);
+            let in_file = stays_in_file(limit, &unread, both, Parts::Layers, asked).with_context(name)?;
+            if let Some(in_file) = in_file {
+                return self.on_own_cells_in_file(unread, &in_file, &method);
             }
         }
         let mut volume = limit.read(unread, held)?;
@@ -219,12 +218,12 @@ impl Sweep<'_> {
     }
 
     /// The same of a volume that stays in its file: it is read once for each isovalue, since no ranges of it are kept.
-    fn on_own_cells_in_file(&self, unread: Unread, method: &Method, execution: &Execution) -> Result<Swept> {
+    fn on_own_cells_in_file(&self, unread: Unread, in_file: &InFile, method: &Method) -> Result<Swept> {
         let name = || self.path.display().to_string();
         let (limit, before, options) = (self.arguments.source.limit(), Held::now(), self.options(0.0));
         let frame = unread.frame();
         let Frame { counts, origin, steps, .. } = frame;
-        let samples = Arc::new(FileSamples::open(unread)?);
+        let (samples, execution) = (Arc::new(FileSamples::open(unread, in_file)?), &in_file.execution);
         let layers = Layers { samples: &samples, is_below: options.inside == Some(Inside::Below) };
         let cells = VolumeCells { counts, values: &[], origin, steps };
         let mut extractor = Extractor::new();
@@ -237,7 +236,7 @@ impl Sweep<'_> {
         let surfaces = surfaces.collect::<Result<Vec<_>>>()?;
         let mut values = String::new();
         if surfaces.iter().all(|surface| surface.file.is_none()) {
-            let own = options.of_own_cells_in_file(&samples, &frame, &name())?;
+            let own = options.of_own_cells_in_file(&samples, &frame, execution, &name())?;
             own.source.values().clone_into(&mut values);
         }
         Ok((None, surfaces, values))

@@ -44,10 +44,8 @@ pub(super) fn extract(
         // The layers that are read are those of the grid.
         let held = (held, OfVolume::in_file(&unread, 0));
         let asked = (method, &grid, execution);
-        if let Some(InFile { execution, .. }) =
-            stays_in_file(limit, &unread, held, Parts::Layers, asked).with_context(name)?
-        {
-            return extract_in_file(arguments, unread, method, &execution, is_measured);
+        if let Some(in_file) = stays_in_file(limit, &unread, held, Parts::Layers, asked).with_context(name)? {
+            return extract_in_file(arguments, unread, &in_file, method, is_measured);
         }
     }
     let mut volume = limit.read(unread, held)?;
@@ -72,14 +70,14 @@ pub(super) fn extract(
 fn extract_in_file(
     arguments: &SourceArguments,
     unread: Unread,
+    in_file: &InFile,
     method: &Method,
-    execution: &Execution,
     is_measured: bool,
 ) -> Result<OfOwnCells> {
     let (limit, before, options) = (arguments.limit(), Held::now(), arguments.options());
     let (name, frame) = (unread.path().display().to_string(), unread.frame());
     let Frame { counts, origin, steps, .. } = frame;
-    let samples = Arc::new(FileSamples::open(unread)?);
+    let (samples, execution) = (Arc::new(FileSamples::open(unread, in_file)?), &in_file.execution);
     let layers = Layers { samples: &samples, is_below: options.inside == Some(Inside::Below) };
     let isovalue = if layers.is_below { -options.isovalue } else { options.isovalue };
     let cells = VolumeCells { counts, values: &[], origin, steps };
@@ -87,7 +85,7 @@ fn extract_in_file(
     let extraction = samples.vouch(limit.hold(before, extract).with_context(|| name.clone()))?;
     let mut source = None;
     if is_measured || extraction.mesh.triangles.is_empty() {
-        source = Some(options.of_own_cells_in_file(&samples, &frame, &name)?.source);
+        source = Some(options.of_own_cells_in_file(&samples, &frame, execution, &name)?.source);
     }
     let is_turned = !VolumeGrid::try_new(counts, origin, steps).with_context(|| name)?.is_axis_aligned();
     let cells = Cells::Own { counts: counts.map(|n| n as u32 - 1), is_turned };
