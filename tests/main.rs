@@ -16,6 +16,7 @@ mod gate;
 mod http;
 mod isovalues;
 mod labels;
+mod large_volumes;
 mod memory;
 mod messages;
 mod named;

@@ -6,12 +6,14 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
 
-/// A header of 1024 x 1024 x 1024 samples, 4 GiB of them in memory, whose data file is not there: whoever looks for it says so.
-const HEADER: &str = "size = [1024, 1024, 1024]\ntype = \"f32\"\nfile = \"nowhere.raw\"\n";
-const NRRD: &str = "NRRD0004\ntype: float\ndimension: 3\nsizes: 1024 1024 1024\nendian: little\nencoding: raw\n\
+/// A header of 1024 x 1024 x 1024 samples, 4 GiB of them in memory, whose data file is not there: whoever looks for it says so. The data is
+/// compressed, so that no part of it could be read by itself.
+const HEADER: &str =
+    "size = [1024, 1024, 1024]\ntype = \"f32\"\nfile = \"nowhere.raw\"\nencoding = \"gzip\"\n";
+const NRRD: &str = "NRRD0004\ntype: float\ndimension: 3\nsizes: 1024 1024 1024\nendian: little\nencoding: gzip\n\
                     data file: nowhere.raw\n";
-const META: &str =
-    "NDims = 3\nDimSize = 1024 1024 1024\nElementType = MET_FLOAT\nElementDataFile = nowhere.raw\n";
+const META: &str = "NDims = 3\nDimSize = 1024 1024 1024\nElementType = MET_FLOAT\nCompressedData = True\n\
+                    ElementDataFile = nowhere.raw\n";
 /// How every refusal says it.
 const SAMPLES: &str = "4.0 GiB for 1024 x 1024 x 1024 samples, four bytes each";
 
@@ -38,7 +40,11 @@ fn what_does_not_fit_is_refused_from_the_header() {
         [several, vec!["--method", "bi"]].concat(),
     ];
     for (way, name) in ways.iter().flat_map(|way| ["a.toml", "a.nhdr", "a.mhd"].map(|name| (way, name))) {
-        refused(&extract, &[&["--volume", name], &way[..]].concat(), name);
+        let said = refused(&extract, &[&["--volume", name], &way[..]].concat(), name);
+        assert!(
+            said.contains(". If the file is raw, and not compressed, only parts of it are in memory"),
+            "{said}"
+        );
     }
     refused(&extract, &["--labels", "a.nhdr", "-o", "a.ply"], "a.nhdr");
     let others = [
@@ -52,7 +58,7 @@ fn what_does_not_fit_is_refused_from_the_header() {
     }
 }
 
-fn refused(folder: &Folder, arguments: &[&str], name: &str) {
+fn refused(folder: &Folder, arguments: &[&str], name: &str) -> String {
     let said = folder.run(&[arguments, &["--memory", "4.0625GiB"]].concat());
     assert_eq!(said.code, Some(2), "{arguments:?}: {}", said.stderr);
     for part in [name, " of memory are needed: ", SAMPLES, "; --memory allows 4.0 GiB"] {
@@ -62,6 +68,7 @@ fn refused(folder: &Folder, arguments: &[&str], name: &str) {
         assert!(is_there, "{arguments:?}: {part} is not in {}", said.stderr);
     }
     assert!(!said.stderr.contains("nowhere.raw"), "{arguments:?}: {}", said.stderr);
+    said.stderr
 }
 
 /// The same sentence, with another limit, before anything is made.
@@ -85,11 +92,11 @@ fn a_study_is_refused_from_the_header() {
 }
 
 /// What a process may hold beside what `--memory` counts.
-const BESIDE: u64 = 64 << 20;
+pub(crate) const BESIDE: u64 = 64 << 20;
 
 /// A run of `isostudy extract`, and the most memory that was resident, in bytes.
 #[cfg(target_os = "linux")]
-fn peak(folder: &Folder, arguments: &[&str]) -> (Option<i32>, String, u64) {
+pub(crate) fn peak(folder: &Folder, arguments: &[&str]) -> (Option<i32>, String, u64) {
     let mut command = folder.isostudy();
     command.arg("extract").args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
@@ -150,7 +157,7 @@ fn limits_hold(folder: &Folder, method: &str, threads: &str) {
             low = limit;
         }
     }
-    assert!(refused_in_the_mesh > 1, "{method}: the mesh never grew beyond the limit");
+    assert!(refused_in_the_mesh > 0, "{method}: the mesh never grew beyond the limit");
 }
 
 #[cfg(target_os = "linux")]

@@ -157,8 +157,7 @@ fn lowest_numbered(own: &Range<usize>) -> usize {
 
 impl Net<'_> {
     fn find_sides(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
-        self.sampling.find_sides(&mut slab.workspace.samples, layer);
-        Ok(())
+        self.sampling.find_sides(&mut slab.workspace.samples, layer)
     }
 
     fn fill(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {

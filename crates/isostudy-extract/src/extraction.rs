@@ -3,6 +3,7 @@
 use std::collections::TryReserveError;
 use std::time::Duration;
 
+use isostudy_field::UnreadSamples;
 use isostudy_mesh::TriangleMesh;
 
 use crate::lattice::{Arrangement, CellBox, Lattice};
@@ -140,6 +141,15 @@ pub enum ExtractError {
         /// Stored points along each axis.
         wanted: [usize; 3],
     },
+    /// Stored samples that are not those of the lattice's points.
+    StoredCounts {
+        /// Samples along each axis.
+        given: [usize; 3],
+        /// Stored points along each axis.
+        wanted: [usize; 3],
+    },
+    /// Stored samples that cannot be read.
+    Unread(UnreadSamples),
     /// The samples of a box that is not the lattice.
     Window {
         /// What was given.
@@ -204,6 +214,8 @@ in_words! {
         Self::NoMemoryForMesh => "no memory for a mesh this large";
         Self::SampleCount { given, wanted } => "{given} samples for a lattice of {wanted}";
         Self::BrickCounts { given, wanted } => "bricks of {given:?} samples for a lattice of {wanted:?}";
+        Self::StoredCounts { given, wanted } => "{given:?} samples for a lattice of {wanted:?}";
+        Self::Unread(why) => "{why}";
         Self::Window { given, wanted } => "samples of the cells {given:?} for a lattice of {wanted:?}";
         Self::ArrangementClustering { arrangement, clustering } =>
             "{clustering} clustering does not go with {arrangement}: none and edge-collapse do, integrated \

@@ -145,7 +145,7 @@ impl Extractor {
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
         check(settings, lattice.arrangement())?;
-        let (values, bricks) = match source {
+        let given = match source {
             Source::Field(field) => {
                 placement::check(settings, true)?;
                 // In debug builds somebody looks whether it keeps its promises.
@@ -159,32 +159,41 @@ impl Extractor {
                 placement::check(settings, true)?;
                 return self.of_field(field, lattice, settings, cubes, control, extraction);
             }
-            Source::Samples(samples) => (samples, None),
+            Source::Samples(samples) => Sampler::Given { values: samples, bricks: None },
+            Source::Stored(samples) => {
+                let (given, wanted) = (samples.counts(), lattice.stored_grid().map(|n| n as usize));
+                if given != wanted {
+                    return Err(ExtractError::StoredCounts { given, wanted });
+                }
+                Sampler::Stored(samples)
+            }
             Source::Bricks(bricks) => {
                 let (given, wanted) = (bricks.samples().counts(), lattice.stored_grid().map(|n| n as usize));
                 if given != wanted {
                     return Err(ExtractError::BrickCounts { given, wanted });
                 }
-                (bricks.samples().values(), Some(bricks))
+                Sampler::Given { values: bricks.samples().values(), bricks: Some(bricks) }
             }
             Source::Window { cells, samples } => {
                 let wanted = lattice.cell_box();
                 if cells != wanted {
                     return Err(ExtractError::Window { given: cells, wanted });
                 }
-                (samples, None)
+                Sampler::Given { values: samples, bricks: None }
             }
         };
         placement::check(settings, false)?;
-        let (given, wanted) = (values.len() as u64, lattice.stored_samples());
-        if given != wanted {
-            return Err(ExtractError::SampleCount { given, wanted });
+        if let Sampler::Given { values, .. } = given {
+            let (given, wanted) = (values.len() as u64, lattice.stored_samples());
+            if given != wanted {
+                return Err(ExtractError::SampleCount { given, wanted });
+            }
         }
         if settings.positions != Positions::Indexed {
             return Err(ExtractError::SamplesAccumulated);
         }
         let start = Moment::now();
-        self.stream((Sampler::Given { values, bricks }, start), lattice, settings, cubes, control, extraction)
+        self.stream((given, start), lattice, settings, cubes, control, extraction)
     }
 
     fn of_field(

@@ -155,11 +155,18 @@ pub enum LatticeError {
         /// [`Lattice::MAX_CELLS_PER_AXIS`].
         limit: u32,
     },
-    /// More sample points than a 32-bit index can name.
+    /// More sample points than can be counted, or more in the window of a chunk than a 32-bit number can name.
     TooManySamples {
         /// What the lattice would store.
         samples: u128,
-        /// [`Lattice::MAX_SAMPLES`].
+        /// [`Lattice::MAX_SAMPLES`], or [`Lattice::MAX_SAMPLES_OF_CHUNK`].
+        limit: u64,
+    },
+    /// More sample points in a layer than a 32-bit number can name.
+    TooManyInLayer {
+        /// What a layer would store.
+        samples: u128,
+        /// [`Lattice::MAX_SAMPLES_PER_LAYER`].
         limit: u64,
     },
     /// The outermost lattice points lie beyond the range of `f32`.
@@ -179,6 +186,8 @@ in_words! {
         Self::TooManyCells { axis, cells, limit } =>
             "{} cells along {axis} exceed the limit of {limit}", short(*cells);
         Self::TooManySamples { samples, limit } => "{samples} sample points exceed the limit of {limit}";
+        Self::TooManyInLayer { samples, limit } =>
+            "{samples} sample points in each layer exceed the limit of {limit}";
         Self::OutOfRange { axis, spacing } =>
             "spacing {} puts lattice points along {axis} beyond the range of f32", short(*spacing);
     }
@@ -193,8 +202,15 @@ pub(crate) fn short(value: f32) -> String {
 impl Lattice {
     /// The most cells along one axis: whole numbers in `f32` are exact up to here.
     pub const MAX_CELLS_PER_AXIS: u32 = 1 << 24;
-    /// The most stored sample points.
-    pub const MAX_SAMPLES: u64 = u32::MAX as u64;
+    /// The most stored sample points: so many that edges and tetrahedra can be counted in 64 bits. Where memory has 32-bit addresses, as
+    /// many as these can tell apart.
+    ///
+    /// Streaming holds a few layers, and numbers nothing by its place in the whole lattice; so this is no matter of memory.
+    pub const MAX_SAMPLES: u64 = if usize::BITS < 64 { usize::MAX as u64 } else { 1 << 48 };
+    /// The most stored sample points of a layer: what is remembered of the points of one is numbered in 32 bits.
+    pub const MAX_SAMPLES_PER_LAYER: u64 = u32::MAX as u64;
+    /// The most stored sample points of the window of a [chunk](crate::ChunkExtractor): a triangle's cell there has a 32-bit number.
+    pub const MAX_SAMPLES_OF_CHUNK: u64 = u32::MAX as u64;
 
     /// A lattice with cubes of edge `spacing` over `bounds`, in the unit of the field's coordinates.
     ///
@@ -226,7 +242,7 @@ impl Lattice {
             cells[i] = wanted as u32;
         }
         let lattice = Self { arrangement, bounds, spacing, cells, origin: [0; 3], whole: Whole::Box(cells) };
-        lattice.check_samples()?;
+        lattice.check_samples(Self::MAX_SAMPLES)?;
         Ok(lattice)
     }
 
@@ -264,7 +280,7 @@ impl Lattice {
         let (origin, size) = (cells.start, cells.size());
         let lattice =
             Self { arrangement, bounds, spacing, cells: size, origin, whole: Whole::Endless(*grid) };
-        lattice.check_samples()?;
+        lattice.check_samples(Self::MAX_SAMPLES_OF_CHUNK)?;
         let Bounds { min, max } = lattice.sampled_bounds();
         for (i, axis) in ['x', 'y', 'z'].into_iter().enumerate() {
             if !(min[i].is_finite() && max[i].is_finite()) {
@@ -274,7 +290,7 @@ impl Lattice {
         Ok(lattice)
     }
 
-    fn check_samples(&self) -> Result<(), LatticeError> {
+    fn check_samples(&self, limit: u64) -> Result<(), LatticeError> {
         let beyond = match self.arrangement {
             Arrangement::BodyCentred => [(1, 2), (1, 2), (2, 3)],
             Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => [(1, 1); 3],
@@ -282,16 +298,25 @@ impl Lattice {
         };
         let points = [0, 1, 2].map(|axis| beyond[axis].0 * u128::from(self.cells[axis]) + beyond[axis].1);
         let samples = points.iter().product();
-        if samples > u128::from(Self::MAX_SAMPLES) {
-            return Err(LatticeError::TooManySamples { samples, limit: Self::MAX_SAMPLES });
+        if samples > u128::from(limit) {
+            return Err(LatticeError::TooManySamples { samples, limit });
+        }
+        let (samples, limit) = (points[0] * points[1], Self::MAX_SAMPLES_PER_LAYER);
+        if samples > u128::from(limit) {
+            return Err(LatticeError::TooManyInLayer { samples, limit });
         }
         Ok(())
     }
 
     /// The same lattice, of which only the cells of a box are there. Points are where they are in the whole, and
     /// vertices are clamped to the whole's box.
-    pub(crate) fn window(&self, cells: CellBox) -> Self {
-        Self { cells: cells.size(), origin: cells.start, ..self.clone() }
+    ///
+    /// # Errors
+    /// [`LatticeError::TooManySamples`] if there are more than of a chunk.
+    pub(crate) fn window(&self, cells: CellBox) -> Result<Self, LatticeError> {
+        let window = Self { cells: cells.size(), origin: cells.start, ..self.clone() };
+        window.check_samples(Self::MAX_SAMPLES_OF_CHUNK)?;
+        Ok(window)
     }
 
     /// The cells that are there, in the whole lattice.
@@ -310,10 +335,10 @@ impl Lattice {
         self.origin
     }
 
-    /// The number of a cell of this window, x fastest.
+    /// The number of a cell of this window, x fastest; of no use in lattices that are too large for a chunk, which ask for none.
     pub(crate) fn cell_number(&self, [x, y, z]: [usize; 3]) -> u32 {
         let [nx, ny, _] = self.cells;
-        (z as u32 * ny + y as u32) * nx + x as u32
+        (z as u32).wrapping_mul(ny).wrapping_add(y as u32).wrapping_mul(nx).wrapping_add(x as u32)
     }
 
     /// Where a stored point of this window is stored in the whole lattice, along each axis.

@@ -112,7 +112,7 @@
 //!
 //! With [`Positions::Indexed`] the lattice is streamed: a few layers in memory, then the mesh; slabs of layers on
 //! several threads; samples taken only where the field does not rule the surface out ([`StudyField::slope`]), or
-//! given ([`Source::Samples`]). An [`Extractor`] keeps its buffers from one volume to the next. With
+//! given ([`Source::Samples`]), or read layer by layer ([`Source::Stored`]). An [`Extractor`] keeps its buffers from one volume to the next. With
 //! [`Positions::Accumulated`], for comparison with the published evaluation, all samples and edges are stored. The
 //! arrangements that are cut cube by cube are streamed by an extractor of their own.
 //!
@@ -145,7 +145,8 @@
 //! | spacing too small, too large for `f32` | [`LatticeError::TooManyCells`], [`LatticeError::TooManySamples`], [`LatticeError::OutOfRange`] |
 //! | spacing beyond the box | one cell; as published it reaches past the box |
 //! | box empty, inverted, infinite, `NaN` | [`LatticeError::Bounds`] |
-//! | samples of another number than the lattice has | [`ExtractError::SampleCount`] |
+//! | samples of another number than the lattice has | [`ExtractError::SampleCount`], [`ExtractError::StoredCounts`] |
+//! | stored samples that cannot be read | [`ExtractError::Unread`] |
 //! | chunks of two grids, methods or isovalues, welded | [`WeldError::Worlds`] |
 //! | a clustering that the arrangement does not have | [`ExtractError::ArrangementClustering`] |
 //! | accumulated positions on one that the original did not have | [`ExtractError::ArrangementAccumulated`] |
@@ -234,7 +235,10 @@ pub use duals::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume
 pub use execution::{Control, Jobs, Threads};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::Extractor;
-pub use isostudy_field::{Aabb, Bound, FieldFault, FromFn, ScalarField, StudyField, check_field, from_fn};
+pub use isostudy_field::{
+    Aabb, Bound, FieldFault, FromFn, ScalarField, StoredSamples, StudyField, UnreadSamples, check_field,
+    from_fn,
+};
 pub use lattice::{Arrangement, BoxGrid, CellBox, Grid, GridError, LatticeError};
 pub use levels::{LevelError, LevelExtractor, Neighbours};
 pub use measure::{

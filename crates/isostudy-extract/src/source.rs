@@ -1,10 +1,11 @@
-//! Where samples come from: a field that is called, or an array that is there.
+//! Where samples come from: a field that is called, an array that is there, or layers that are read.
 
-use isostudy_field::{ScalarField, StudyField};
+use isostudy_field::{ScalarField, StoredSamples, StudyField};
 
 use crate::active::Bricks;
 use crate::clock::Moment;
 use crate::execution::control::Control;
+use crate::extraction::ExtractError;
 use crate::lattice::{CellBox, Lattice};
 use crate::sampling::level::Level;
 use crate::settings::ExtractSettings;
@@ -27,6 +28,9 @@ pub enum Source<'a> {
     /// The same with the ranges of their bricks, which need not be read where they lie on one side of the isovalue: for one
     /// isovalue after another. The mesh is the same.
     Bricks(&'a Bricks<'a>),
+    /// The same samples, of which a layer is read when it is wanted, and forgotten a few layers later: for those of a file that is larger than
+    /// memory. As many along each axis as the lattice stores. The mesh is the same.
+    Stored(&'a dyn StoredSamples),
     /// The samples of a box of cells, in the order of [`SampleLayout`](crate::SampleLayout): for a
     /// [`ChunkExtractor`](crate::ChunkExtractor), of a box that contains its
     /// [`window`](crate::ChunkExtractor::window), and fastest of that box itself.
@@ -71,6 +75,8 @@ pub(crate) enum Sampler<'a> {
         values: &'a [f32],
         bricks: Option<&'a Bricks<'a>>,
     },
+    /// The same, to be read.
+    Stored(&'a dyn StoredSamples),
 }
 
 /// One extraction: valid settings, a field made ready or as many samples as the lattice has.
@@ -92,7 +98,20 @@ impl<'a> Request<'a> {
             Sampler::Field(field) => {
                 Some(Level { field, isovalue: self.settings.isovalue, spacing: self.lattice.spacing() })
             }
-            Sampler::Given { .. } => None,
+            Sampler::Given { .. } | Sampler::Stored(_) => None,
         }
     }
+}
+
+/// Reads a layer of stored samples.
+///
+/// # Errors
+/// [`ExtractError::Unread`].
+pub(crate) fn read_layer(
+    samples: &dyn StoredSamples,
+    layer: usize,
+    values: &mut [f32],
+) -> Result<(), ExtractError> {
+    let [nx, ny, _] = samples.counts();
+    samples.read_box([0, 0, layer], [nx, ny, 1], values).map_err(ExtractError::Unread)
 }

@@ -9,7 +9,7 @@
 //! | [`Sphere`], [`Asteroid`], [`Gyroid`] | formulas |
 //! | [`Terrain`] | ground with hills, cliffs and caves, from [`noise()`] and [`Fractal`] |
 //! | [`MeshDistance`] | the distance to a triangle mesh, positive inside |
-//! | [`VolumeField`] | samples of a regular grid, interpolated |
+//! | [`VolumeField`] | samples of a regular grid, interpolated; in memory, or read where they are wanted ([`StoredSamples`]) |
 //! | [`Negated`], [`Walled`] | another field, turned round or ended at walls |
 //! | [`Counted`] | another field, and how often it was called |
 //!
@@ -52,7 +52,7 @@ pub use noise::{NOISE_CURVATURE, NOISE_SLOPE, noise, noise_and_gradient, noise_r
 pub use scalar_field::{Bound, FromFn, Plain, ScalarField, from_fn};
 pub use sphere::Sphere;
 pub use terrain::{Terrain, TerrainCharacter, TerrainError, TerrainSettings};
-pub use volume::{Beyond, VolumeField, VolumeFieldError, VolumeGrid};
+pub use volume::{Beyond, StoredSamples, UnreadSamples, VolumeField, VolumeFieldError, VolumeGrid};
 pub use walled::Walled;
 
 use std::any::Any;

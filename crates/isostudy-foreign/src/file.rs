@@ -49,9 +49,22 @@ pub enum FileProblem {
         /// Where, from 0.
         at: usize,
     },
+    /// Somebody wrote to a file of which [`Parts`](crate::Parts) are read, or cut it off.
+    #[error("the file changed while it was read{}", lengths(*was_bytes, *is_bytes))]
+    Changed {
+        /// How long it was.
+        was_bytes: u64,
+        /// How long it is.
+        is_bytes: u64,
+    },
     /// What the system said.
     #[error("{0}")]
     Io(io::Error),
+}
+
+/// What is known of a change by how long the file is.
+fn lengths(was: u64, is: u64) -> String {
+    if was == is { String::new() } else { format!(": it had {was} bytes and has {is}") }
 }
 
 /// What is there in place of a file.

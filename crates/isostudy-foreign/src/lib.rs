@@ -3,7 +3,8 @@
 //! # Files
 //!
 //! [`open`], [`bytes`] and [`text`] take regular files alone. A folder, a device, a pipe or a socket is [`FileProblem::NotAFile`], and
-//! none of them is waited for. What is read has a limit in bytes, and text has one for its lines. Every error names the path.
+//! none of them is waited for. What is read has a limit in bytes, and text has one for its lines. Every error names the path. Of a file
+//! that is larger than memory, [`Parts`] are read; it must stay as it is meanwhile.
 //!
 //! # Processes
 //!
@@ -32,6 +33,7 @@ mod folder;
 mod group;
 mod interrupt;
 mod lines;
+mod parts;
 mod processes;
 mod shown;
 mod tail;
@@ -43,6 +45,7 @@ pub use folder::Folder;
 pub use group::{End, Memory};
 pub use interrupt::leave_signals_to_others;
 pub use lines::Heard;
+pub use parts::Parts;
 pub use shown::{shown, shown_in_a_line};
 pub use tail::Told;
 pub use wrapper::wrapper;

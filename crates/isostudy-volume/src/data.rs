@@ -56,27 +56,6 @@ impl SampleKind {
         }
     }
 
-    /// From as many bytes as the type has, the lowest first.
-    fn value(self, b: &[u8]) -> f32 {
-        match self {
-            Self::I8 => f32::from(b[0] as i8),
-            Self::U8 => f32::from(b[0]),
-            Self::I16 => f32::from(i16::from_le_bytes([b[0], b[1]])),
-            Self::U16 => f32::from(u16::from_le_bytes([b[0], b[1]])),
-            Self::I32 => i32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
-            Self::U32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
-            Self::F32 => f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
-            Self::F64 => f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]) as f32,
-        }
-    }
-
-    /// Whether the sample is finite and its value is not.
-    fn is_too_large(self, value: f32, b: &[u8]) -> bool {
-        self == Self::F64
-            && value.is_infinite()
-            && f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]).is_finite()
-    }
-
     fn parse(self, token: &str) -> Option<f32> {
         match self {
             Self::I8 => token.parse::<i8>().ok().map(f32::from),
@@ -98,6 +77,18 @@ pub(crate) enum Encoding {
     Zlib,
     Text,
     Hex,
+}
+
+impl Encoding {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Raw => "raw",
+            Self::Gzip => "gzip",
+            Self::Zlib => "zlib",
+            Self::Text => "text",
+            Self::Hex => "hex",
+        }
+    }
 }
 
 /// What stands before the samples.
@@ -129,11 +120,7 @@ pub(crate) fn open(path: &Path) -> Result<BufReader<File>, Problem> {
 
 /// Reads the samples, from the data's first byte.
 pub(crate) fn read(mut input: impl BufRead + Seek, layout: &Layout) -> Result<Vec<f32>, Problem> {
-    for _ in 0..layout.skip.lines {
-        if input.skip_until(b'\n')? == 0 {
-            return Err(Problem::Truncated { got: 0, wanted: layout.samples });
-        }
-    }
+    skip_lines(&mut input, layout)?;
     match layout.encoding {
         Encoding::Raw => {
             if layout.skip.bytes.is_none() {
@@ -145,6 +132,54 @@ pub(crate) fn read(mut input: impl BufRead + Seek, layout: &Layout) -> Result<Ve
         Encoding::Zlib => binary(ZlibDecoder::new(input), layout),
         Encoding::Hex => binary(HexDecoder(input), layout),
         Encoding::Text => text(input, layout),
+    }
+}
+
+/// Leaves the input after the lines that stand before the data.
+pub(crate) fn skip_lines(input: &mut impl BufRead, layout: &Layout) -> Result<(), Problem> {
+    for _ in 0..layout.skip.lines {
+        if input.skip_until(b'\n')? == 0 {
+            return Err(Problem::Truncated { got: 0, wanted: layout.samples });
+        }
+    }
+    Ok(())
+}
+
+/// Makes values of the bytes of as many samples. Returns how many are finite in the file, and beyond single precision.
+pub(crate) fn decode(layout: &Layout, bytes: &[u8], values: &mut [f32]) -> u64 {
+    let big = layout.big_endian;
+    let mut too_large = 0;
+    match layout.kind {
+        SampleKind::I8 => each(big, bytes, values, |b| f32::from(i8::from_le_bytes(b))),
+        SampleKind::U8 => each(big, bytes, values, |b| f32::from(u8::from_le_bytes(b))),
+        SampleKind::I16 => each(big, bytes, values, |b| f32::from(i16::from_le_bytes(b))),
+        SampleKind::U16 => each(big, bytes, values, |b| f32::from(u16::from_le_bytes(b))),
+        SampleKind::I32 => each(big, bytes, values, |b| i32::from_le_bytes(b) as f32),
+        SampleKind::U32 => each(big, bytes, values, |b| u32::from_le_bytes(b) as f32),
+        SampleKind::F32 => each(big, bytes, values, f32::from_le_bytes),
+        SampleKind::F64 => each(big, bytes, values, |b| {
+            let sample = f64::from_le_bytes(b);
+            let value = sample as f32;
+            too_large += u64::from(sample.is_finite() && value.is_infinite());
+            value
+        }),
+    }
+    too_large
+}
+
+/// `value` of each sample's bytes, the lowest first.
+fn each<const WIDTH: usize>(
+    big_endian: bool,
+    bytes: &[u8],
+    values: &mut [f32],
+    mut value: impl FnMut([u8; WIDTH]) -> f32,
+) {
+    for (to, &sample) in values.iter_mut().zip(bytes.as_chunks().0) {
+        let mut sample: [u8; WIDTH] = sample;
+        if big_endian {
+            sample.reverse();
+        }
+        *to = value(sample);
     }
 }
 
@@ -166,15 +201,10 @@ fn binary(mut input: impl Read, layout: &Layout) -> Result<Vec<f32>, Problem> {
     while left > 0 {
         let asked = left.min(BLOCK as u64) as usize;
         let got = fill(input, &mut block[..asked])?;
-        reserve(&mut values, got / width, layout.samples)?;
-        for sample in block[..got].chunks_exact_mut(width) {
-            if layout.big_endian {
-                sample.reverse();
-            }
-            let value = layout.kind.value(sample);
-            too_large += u64::from(layout.kind.is_too_large(value, sample));
-            values.push(value);
-        }
+        let (before, samples) = (values.len(), got / width);
+        reserve(&mut values, samples, layout.samples)?;
+        values.resize(before + samples, 0.0);
+        too_large += decode(layout, &block[..got], &mut values[before..]);
         if got < asked {
             return Err(Problem::Truncated { got: values.len() as u64, wanted: layout.samples });
         }

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use isostudy_foreign::FileProblem;
 use thiserror::Error;
 
 /// What is wrong, and with which file.
@@ -117,6 +118,25 @@ pub enum Problem {
         count: u64,
         /// Of how many.
         samples: u64,
+    },
+    /// The same in a part that was read by itself.
+    #[error(
+        "{count} of the samples from {place:?} on are beyond {:e}, the largest number of single precision",
+        f32::MAX
+    )]
+    TooLargeHere {
+        /// How many.
+        count: u64,
+        /// Where the part begins, along the axes of the grid.
+        place: [usize; 3],
+    },
+    /// A part that cannot be read, or no longer belongs to the others.
+    #[error("the samples from {place:?} on: {problem}")]
+    Part {
+        /// Where it begins, along the axes of the grid.
+        place: [usize; 3],
+        /// Why not. It is in the message, hence not a source of its own.
+        problem: FileProblem,
     },
     /// Memory that is not to be had.
     #[error("no memory for {samples} samples")]

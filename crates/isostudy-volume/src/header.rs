@@ -5,8 +5,9 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use crate::Volume;
-use crate::data::{self, Layout};
+use crate::data::{self, Encoding, Layout};
 use crate::error::{Problem, VolumeError, shortened};
+use crate::stored::Stored;
 
 /// Far longer than any header; keeps a file of something else from being read to its end.
 const HEADER_LIMIT: usize = 1 << 20;
@@ -128,6 +129,22 @@ impl Unread {
         self.layout.samples * crate::SAMPLE_BYTES
     }
 
+    /// Whether the samples stand in the file one after the other, so that parts of them can be read ([`stored`](Self::stored)): neither
+    /// compressed nor written as text.
+    pub fn is_raw(&self) -> bool {
+        self.layout.encoding == Encoding::Raw
+    }
+
+    /// Opens the data, of which parts are to be read. It must be as long as the header says.
+    ///
+    /// # Errors
+    /// [`VolumeError`]; [`Problem::Unsupported`] if it is not [raw](Self::is_raw).
+    pub fn stored(self) -> Result<Stored, VolumeError> {
+        let Self { frame, layout, header, data } = self;
+        let (input, path) = opened(data, &header)?;
+        Stored::of(input, &path, frame, layout).map_err(|problem| problem.in_file(&path))
+    }
+
     /// Reads the samples, as [`read`](crate::read).
     ///
     /// # Errors
@@ -140,16 +157,22 @@ impl Unread {
             let limit = limit_bytes / crate::SAMPLE_BYTES;
             return Err(Problem::TooManySamples { sizes, needed: Some(needed), limit }.in_file(&header));
         }
-        let (read, path) = match data {
-            Data::Here(input) => (data::read(input, &layout), header),
-            Data::In(name) => {
-                let path = header.parent().unwrap_or(Path::new("")).join(name);
-                (data::open(&path).and_then(|input| data::read(input, &layout)), path)
-            }
-        };
-        let values = read.map_err(|problem| problem.in_file(&path))?;
+        let (input, path) = opened(data, &header)?;
+        let values = data::read(input, &layout).map_err(|problem| problem.in_file(&path))?;
         let Frame { counts, origin, steps } = frame;
         Ok(Volume { counts, origin, steps, values })
+    }
+}
+
+/// The data's file, where the data may begin, and its name.
+fn opened(data: Data, header: &Path) -> Result<(BufReader<File>, PathBuf), VolumeError> {
+    match data {
+        Data::Here(input) => Ok((input, header.to_owned())),
+        Data::In(name) => {
+            let path = header.parent().unwrap_or(Path::new("")).join(name);
+            let input = data::open(&path).map_err(|problem| problem.in_file(&path))?;
+            Ok((input, path))
+        }
     }
 }
 

@@ -24,6 +24,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A volume larger than memory stays in its file, and boxes of its samples are read: [`Unread::stored`]. For that it must be raw.
+//!
 //! # Guaranteed
 //!
 //! - Sample `(i, j, k)` is `values[i + counts[0] * (j + counts[1] * k)]` and lies at
@@ -51,6 +53,7 @@ mod labels;
 mod metaimage;
 mod nrrd;
 mod raw;
+mod stored;
 
 use std::path::Path;
 
@@ -59,6 +62,7 @@ pub use error::{Problem, VolumeError};
 pub use header::{Frame, Unread};
 pub use labels::{LABELS_END, NotALabel};
 pub use raw::RawHeader;
+pub use stored::Stored;
 
 /// For [`read`], where memory need not be watched.
 pub const NO_LIMIT: u64 = u64::MAX;

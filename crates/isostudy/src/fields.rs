@@ -126,6 +126,7 @@ fn options(
         limit: Limit::of_study(study, isostudy_bench::read_machine().memory_bytes),
         // Each of the study's methods is held against the limit by itself.
         method: None,
+        in_file: false,
     }
 }
 

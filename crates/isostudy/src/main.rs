@@ -13,6 +13,7 @@ mod commands;
 mod consent;
 mod error_colours;
 mod fields;
+mod file_samples;
 mod help;
 mod input;
 mod kept_answers;

@@ -116,17 +116,28 @@ impl Limit {
     /// # Errors
     /// If it does, with what needs it, and who sets the limit.
     pub(crate) fn check(self, needs: &Needs) -> Result<()> {
-        let total = needs.total();
-        if total <= self.bytes {
-            return Ok(());
-        }
-        let (total, allowed) = (amount(total, f64::ceil), amount(self.bytes, f64::floor));
+        if self.admits(needs) { Ok(()) } else { bail!(self.refusal(needs)) }
+    }
+
+    /// Whether there is enough.
+    pub(crate) fn admits(self, needs: &Needs) -> bool {
+        needs.total() <= self.bytes
+    }
+
+    /// What is said where there is not.
+    pub(crate) fn refusal(self, needs: &Needs) -> String {
+        let total = amount(needs.total(), f64::ceil);
         match needs {
             Needs { volume: None, grid: Some((what, _)) } => {
-                bail!("{what} needs {total} of memory; {} {allowed}", self.name)
+                format!("{what} needs {total} of memory; {}", self.allowed())
             }
-            _ => bail!("{total} of memory are needed: {}; {} {allowed}", needs.parts(), self.name),
+            _ => format!("{total} of memory are needed: {}; {}", needs.parts(), self.allowed()),
         }
+    }
+
+    /// `--memory allows 1.0 GiB`.
+    pub(crate) fn allowed(self) -> String {
+        format!("{} {}", self.name, amount(self.bytes, f64::floor))
     }
 }
 
@@ -176,6 +187,8 @@ pub(crate) struct OfVolume {
     counts: [usize; 3],
     /// The samples, four bytes each.
     samples: u64,
+    /// Whether these are bricks of a volume that stays in its file.
+    in_bricks: bool,
     /// What is made of them and kept beside them.
     beside: (&'static str, u64),
 }
@@ -183,7 +196,13 @@ pub(crate) struct OfVolume {
 impl OfVolume {
     /// Samples alone.
     pub(crate) fn samples(unread: &Unread) -> Self {
-        Self { counts: unread.frame().counts, samples: unread.memory_bytes(), beside: ("", 0) }
+        let samples = unread.memory_bytes();
+        Self { counts: unread.frame().counts, samples, in_bricks: false, beside: ("", 0) }
+    }
+
+    /// So many bytes of samples of a volume that stays in its file: none, where the layers of the grid are all that is held of it.
+    pub(crate) fn in_file(unread: &Unread, bytes: u64) -> Self {
+        Self { samples: bytes, in_bricks: true, ..Self::samples(unread) }
     }
 
     /// With what is made of them and kept beside them.
@@ -215,7 +234,7 @@ impl Needs {
         Ok(Self { grid: Some((what, method.memory_bytes(grid, execution)?)), ..self })
     }
 
-    fn total(&self) -> u64 {
+    pub(crate) fn total(&self) -> u64 {
         let grid = self.grid.as_ref().map_or(0, |(_, bytes)| *bytes);
         self.volume.as_ref().map_or(0, OfVolume::total).saturating_add(grid)
     }
@@ -223,8 +242,10 @@ impl Needs {
     fn parts(&self) -> String {
         let up = |bytes| amount(bytes, f64::ceil);
         let mut parts = Vec::new();
-        if let Some(OfVolume { counts: [x, y, z], samples, beside: (what, bytes) }) = self.volume {
-            parts.push(format!("{} for {x} x {y} x {z} samples, four bytes each", up(samples)));
+        if let Some(OfVolume { counts: [x, y, z], samples, in_bricks, beside: (what, bytes) }) = self.volume {
+            let bricks = if in_bricks { "bricks of " } else { "" };
+            let of_samples = format!("{} for {bricks}{x} x {y} x {z} samples, four bytes each", up(samples));
+            parts.extend((samples > 0).then_some(of_samples));
             parts.extend((bytes > 0).then(|| format!("{} for {what}", up(bytes))));
         }
         parts.extend(self.grid.as_ref().map(|(what, bytes)| format!("{} for {what}", up(*bytes))));

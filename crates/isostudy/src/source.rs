@@ -1,5 +1,6 @@
 //! Where a surface comes from: a formula, a volume or a mesh; and where it is looked at.
 
+use crate::file_samples::{FileSamples, Parts, field_bytes, stays_in_file};
 use crate::memory::{Limit, OfVolume};
 use crate::mesh_file;
 use crate::place::place;
@@ -16,6 +17,7 @@ use isostudy_mesh::{Bounds, repair};
 use isostudy_volume::{Frame, Unread, Volume};
 use serde::Serialize;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Cells along the longest side, where neither spacing nor cells are given.
 const CELLS: u32 = 100;
@@ -47,6 +49,8 @@ pub(crate) struct Source {
     pub(crate) name: String,
     /// What a volume takes of the memory.
     pub(crate) held: Option<OfVolume>,
+    /// Of a volume that stays in its file.
+    in_file: Option<(Arc<FileSamples>, Execution)>,
     /// What is known of its values, for a surface that is not there.
     values: String,
 }
@@ -62,13 +66,14 @@ pub(crate) struct OwnCells {
 }
 
 /// A volume as it was read.
-pub(crate) struct VolumeInFile {
+pub(crate) struct ReadVolume {
     field: VolumeField,
     held: OfVolume,
+    in_file: Option<(Arc<FileSamples>, Execution)>,
     name: String,
 }
 
-impl VolumeInFile {
+impl ReadVolume {
     /// As asked for; the samples are shared.
     ///
     /// # Errors
@@ -97,6 +102,8 @@ pub(crate) struct Options {
     pub(crate) limit: Limit,
     /// What it is for, if it is for a mesh: what that holds beside a volume is known before the samples are read.
     pub(crate) method: Option<(Method, Execution)>,
+    /// Whether a volume may stay in its file, if there is a method.
+    pub(crate) in_file: bool,
 }
 
 impl Options {
@@ -129,7 +136,8 @@ impl Options {
         let bounds = self.bounds.unwrap_or(bounds);
         let spacing = self.spacing.unwrap_or_else(|| bounds.spacing_of_cells(self.cells.unwrap_or(CELLS)));
         let (name, values) = (name.to_owned(), String::new());
-        Source { field, isovalue, inside, bounds, spacing, is_closed: false, name, held: None, values }
+        let (is_closed, held, in_file) = (false, None, None);
+        Source { field, isovalue, inside, bounds, spacing, is_closed, name, held, in_file, values }
     }
 
     /// A volume in a file.
@@ -144,31 +152,67 @@ impl Options {
     ///
     /// # Errors
     /// If it cannot be read, is too large, or is none.
-    pub(crate) fn read_volume(&self, path: &Path) -> Result<VolumeInFile> {
+    pub(crate) fn read_volume(&self, path: &Path) -> Result<ReadVolume> {
         let name = || path.display().to_string();
         let unread = isostudy_volume::open(path)?;
-        let held = held_as_a_field(&unread);
+        let whole = held_as_a_field(&unread);
         let Frame { counts, origin, steps, .. } = unread.frame();
         let grid = VolumeGrid::try_new(counts, origin, steps).with_context(name)?;
         let over = self.grid_over(&grid, &name())?;
-        if let Some((method, execution)) = &self.method {
-            let checked = self.limit.check_method(method, &over, execution, Some(held));
-            checked.with_context(|| format!("{}, {}", name(), place_of(&over)))?;
-        }
-        let Volume { values, .. } = self.limit.read(unread, held)?;
-        let field =
-            VolumeField::try_new(counts, values, origin, steps, Beyond::Continued).with_context(name)?;
+        let place = || format!("{}, {}", name(), place_of(&over));
+        let in_file = match &self.method {
+            Some((method, execution)) if self.in_file => {
+                let in_file = held_in_bricks(&unread, &grid, self.limit);
+                let asked = (method, &over, execution);
+                stays_in_file(self.limit, &unread, (whole, in_file), Parts::Bricks, asked)
+                    .with_context(place)?
+            }
+            Some((method, execution)) => {
+                self.limit.check_method(method, &over, execution, Some(whole)).with_context(place)?;
+                None
+            }
+            None => None,
+        };
+        let (field, held, in_file) = match in_file {
+            None => {
+                let Volume { values, .. } = self.limit.read(unread, whole)?;
+                let field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued);
+                (field.with_context(name)?, whole, None)
+            }
+            Some(in_file) => {
+                let samples = Arc::new(FileSamples::open(unread, &in_file)?);
+                let (held, execution) = (in_file.held, in_file.execution);
+                let field = self.of_file_samples(&samples, (origin, steps), &execution, &name())?;
+                (field, held, Some((samples, execution)))
+            }
+        };
         if !field.is_axis_aligned() && !self.close {
             let name = path.display();
             tell_once(&format!(
                 "{name}: the grid is turned against the axes; the surface is closed where it leaves it"
             ));
         }
-        Ok(VolumeInFile { field, held, name: name() })
+        Ok(ReadVolume { field, held, in_file, name: name() })
     }
 
-    fn of_volume_read(&self, volume: &VolumeInFile) -> Result<Source> {
-        let VolumeInFile { field, held, name } = volume;
+    /// A field of samples in a file, all of which are read once.
+    ///
+    /// # Errors
+    /// If they cannot be read, or are no field.
+    fn of_file_samples(
+        &self,
+        samples: &Arc<FileSamples>,
+        (origin, steps): ([f64; 3], [[f64; 3]; 3]),
+        execution: &Execution,
+        name: &str,
+    ) -> Result<VolumeField> {
+        let (of, bytes) = (Arc::clone(samples), field_bytes(self.limit));
+        let field = VolumeField::try_stored(of, origin, steps, Beyond::Continued, bytes, execution.threads);
+        samples.vouch(field.with_context(|| name.to_owned()))
+    }
+
+    fn of_volume_read(&self, volume: &ReadVolume) -> Result<Source> {
+        let ReadVolume { field, held, in_file, name } = volume;
         let mut field = field.clone();
         let BoxGrid { bounds, spacing } = self.grid_over(field.grid(), name)?;
         let beyond = match self.inside {
@@ -182,7 +226,8 @@ impl Options {
         }
         let values = values_of(&field);
         let source = self.of_field(Box::new(field), Inside::Above, bounds, name);
-        let mut source = Source { spacing, values, held: Some(*held), ..source };
+        let (held, in_file) = (Some(*held), in_file.clone());
+        let mut source = Source { spacing, values, held, in_file, ..source };
         if self.close || is_turned && self.bounds.is_none() {
             source = source.closed();
         }
@@ -219,17 +264,37 @@ impl Options {
     /// # Errors
     /// If it is no field.
     pub(crate) fn of_own_cells(&self, volume: Volume, path: &Path) -> Result<OwnCells> {
-        let name = path.display();
+        let name = path.display().to_string();
         let Volume { counts, values, origin, steps } = volume;
         let field = VolumeField::try_new(counts, values, origin, steps, Beyond::Continued)
-            .with_context(|| name.to_string())?;
+            .with_context(|| name.clone())?;
+        Ok(self.of_own_field(field, steps, &name))
+    }
+
+    /// The same of a volume that stays in its file, all samples of which are read once more.
+    ///
+    /// # Errors
+    /// The same, and if the samples cannot be read.
+    pub(crate) fn of_own_cells_in_file(
+        &self,
+        samples: &Arc<FileSamples>,
+        frame: &Frame,
+        execution: &Execution,
+        name: &str,
+    ) -> Result<OwnCells> {
+        let field = self.of_file_samples(samples, (frame.origin, frame.steps), execution, name)?;
+        let mut own = self.of_own_field(field, frame.steps, name);
+        own.source.in_file = Some((Arc::clone(samples), *execution));
+        Ok(own)
+    }
+
+    fn of_own_field(&self, field: VolumeField, steps: [[f64; 3]; 3], name: &str) -> OwnCells {
         let (bounds, is_turned) = (field.bounds(), !field.is_axis_aligned());
-        let values = values_of(&field);
-        let source = self.of_field(Box::new(field), Inside::Above, bounds, &name.to_string());
+        let (values, cells) = (values_of(&field), field.grid().counts().map(|n| n as u32 - 1));
+        let source = self.of_field(Box::new(field), Inside::Above, bounds, name);
         // The edge of a cube as large as a cell.
         let spacing = glam::DMat3::from_cols_array_2d(&steps).determinant().abs().cbrt() as f32;
-        let cells = counts.map(|n| n as u32 - 1);
-        Ok(OwnCells { source: Source { spacing, values, ..source }, cells, is_turned })
+        OwnCells { source: Source { spacing, values, ..source }, cells, is_turned }
     }
 
     /// The distance to a mesh in a file.
@@ -253,6 +318,12 @@ pub(crate) fn held_as_a_field(unread: &Unread) -> OfVolume {
     // What is no field has no ranges.
     let ranges = VolumeGrid::try_new(counts, origin, steps).map_or(0, |grid| grid.range_bytes());
     OfVolume::samples(unread).with("the ranges of their bricks", ranges)
+}
+
+/// What a volume that stays in its file takes as a field: bricks of its samples, and their ranges.
+fn held_in_bricks(unread: &Unread, grid: &VolumeGrid, limit: Limit) -> OfVolume {
+    let [bricks, ranges] = grid.stored_bytes(field_bytes(limit));
+    OfVolume::in_file(unread, bricks).with("the ranges of their bricks", ranges)
 }
 
 /// What is known of a volume's values, for a surface that is not there.
@@ -328,6 +399,22 @@ impl Source {
     fn closed(self) -> Self {
         let field = Box::new(Walled::new(self.field, self.bounds, self.isovalue));
         Self { field, is_closed: true, ..self }
+    }
+
+    /// On which threads, where somebody asks for some: on no more than a volume leaves memory for that stays in its file.
+    pub(crate) fn execution(&self, asked: &Execution) -> Execution {
+        self.in_file.as_ref().map_or(*asked, |(_, execution)| *execution)
+    }
+
+    /// What was made of the field, if all samples that it was made of could be read.
+    ///
+    /// # Errors
+    /// If the volume stays in its file, and that was changed or could not be read; else those of `made`.
+    pub(crate) fn vouch<T>(&self, made: Result<T>) -> Result<T> {
+        match &self.in_file {
+            Some((samples, _)) => samples.vouch(made),
+            None => made,
+        }
     }
 
     /// Where to look at it.

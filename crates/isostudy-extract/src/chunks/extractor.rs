@@ -3,7 +3,7 @@
 use std::fmt;
 
 use glam::Vec3;
-use isostudy_field::{Aabb, Plain, StudyField, Watched};
+use isostudy_field::{Aabb, Plain, StoredSamples, StudyField, Watched};
 
 use super::chunk::Chunk;
 use super::error::ChunkError;
@@ -272,6 +272,13 @@ impl ChunkExtractor {
                 }
                 None => Err(ChunkError::EndlessSamples),
             },
+            Source::Stored(samples) => match &self.whole {
+                Some(whole) => {
+                    let whole = whole.clone();
+                    self.of_stored(&whole, samples, cells, control, chunk)
+                }
+                None => Err(ChunkError::EndlessSamples),
+            },
             // A chunk reads its own window alone.
             Source::Bricks(bricks) => {
                 return self.extract_into(Source::Samples(bricks.samples().values()), cells, control, chunk);
@@ -293,13 +300,7 @@ impl ChunkExtractor {
         control: Control,
         chunk: &mut Chunk,
     ) -> Result<(), ChunkError> {
-        crate::placement::check(&self.how.settings, false)?;
-        if self.world.method.family().calls_the_field_always() {
-            return Err(MethodError::NeedsField.into());
-        }
-        if self.world.settings.normals == Normals::Field {
-            return Err(ChunkError::NormalsNeedField);
-        }
+        self.check_that_samples_suffice()?;
         self.check(given)?;
         let lattice = self.lattice(given)?;
         let (found, wanted) = (samples.len() as u64, lattice.stored_samples());
@@ -307,6 +308,36 @@ impl ChunkExtractor {
             return Err(ExtractError::SampleCount { given: found, wanted }.into());
         }
         self.by_windows(Given::Samples(&lattice, samples), cells, control, chunk)
+    }
+
+    /// Of samples that are not in memory: those of each window are read.
+    fn of_stored(
+        &mut self,
+        whole: &Lattice,
+        samples: &dyn StoredSamples,
+        cells: CellBox,
+        control: Control,
+        chunk: &mut Chunk,
+    ) -> Result<(), ChunkError> {
+        self.check_that_samples_suffice()?;
+        let (given, wanted) = (samples.counts(), whole.stored_grid().map(|n| n as usize));
+        if given != wanted {
+            return Err(ExtractError::StoredCounts { given, wanted }.into());
+        }
+        self.by_windows(Given::Stored(whole, samples), cells, control, chunk)
+    }
+
+    /// # Errors
+    /// If a field is wanted, between the samples or for normals.
+    fn check_that_samples_suffice(&self) -> Result<(), ChunkError> {
+        crate::placement::check(&self.how.settings, false)?;
+        if self.world.method.family().calls_the_field_always() {
+            return Err(MethodError::NeedsField.into());
+        }
+        match self.world.settings.normals {
+            Normals::Field => Err(ChunkError::NormalsNeedField),
+            _ => Ok(()),
+        }
     }
 
     fn of_field(
@@ -412,9 +443,9 @@ impl ChunkExtractor {
     /// The cells of a box as a lattice.
     fn lattice(&self, cells: CellBox) -> Result<Lattice, ChunkError> {
         match (&self.whole, &self.world.place) {
-            (Some(whole), _) => Ok(whole.window(cells)),
+            (Some(whole), _) => Ok(whole.window(cells)?),
             (None, Place::Endless(grid)) => Ok(Lattice::endless(self.how.arrangement, grid, cells)?),
-            (None, Place::Box(grid)) => Ok(grid.lattice(self.how.arrangement)?.window(cells)),
+            (None, Place::Box(grid)) => Ok(grid.lattice(self.how.arrangement)?.window(cells)?),
         }
     }
 
@@ -472,6 +503,15 @@ impl ChunkExtractor {
                 }
                 Source::Samples(&self.samples)
             }
+            Given::Stored(from, samples) => {
+                let size = lattice.stored_grid().map(|n| n as usize);
+                let (first, all) = (lattice.first_stored(), from.first_stored());
+                let first = [0, 1, 2].map(|axis| (first[axis] - all[axis]) as usize);
+                self.samples.clear();
+                refill(&mut self.samples, size.iter().product(), 0.0)?;
+                samples.read_box(first, size, &mut self.samples).map_err(ExtractError::Unread)?;
+                Source::Samples(&self.samples)
+            }
         };
         let settings = ExtractSettings {
             clustering: self.how.settings.clustering.before_collapse(),
@@ -523,6 +563,8 @@ enum Given<'a> {
     Field(&'a dyn StudyField),
     /// Of a box, all samples.
     Samples(&'a Lattice, &'a [f32]),
+    /// The same, to be read.
+    Stored(&'a Lattice, &'a dyn StoredSamples),
 }
 
 /// How the cells of a window are extracted.

@@ -118,7 +118,7 @@ mod tests {
         let bounds = Bounds { min: Vec3::splat(-9.0), max: Vec3::splat(99.0) };
         let whole = Lattice::try_new(Arrangement::SimpleCubic, bounds, 1.0).unwrap();
         let end = [cells as i32, 1, 1];
-        (positions, triangles, trace, whole.window(CellBox { start: [0; 3], end }))
+        (positions, triangles, trace, whole.window(CellBox { start: [0; 3], end }).unwrap())
     }
 
     fn cells(from: i32, to: i32) -> CellBox {

@@ -78,8 +78,7 @@ impl Streamed for Patched<'_> {
 
 impl Patched<'_> {
     fn find_sides(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
-        self.sampling.find_sides(&mut slab.workspace.samples, layer);
-        Ok(())
+        self.sampling.find_sides(&mut slab.workspace.samples, layer)
     }
 
     fn fill(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {

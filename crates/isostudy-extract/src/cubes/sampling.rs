@@ -1,6 +1,7 @@
 //! Which samples cells need, beside those that sides need.
 
 use super::grid::CubeGrid;
+use crate::extraction::ExtractError;
 use crate::sampling::bits::between;
 use crate::sampling::rows::{Rows, before, next};
 use crate::slabs::window::Window;
@@ -21,8 +22,11 @@ pub(crate) struct Sampling<'a> {
 
 impl Sampling<'_> {
     /// Finds the sides of a layer, with as few samples as may be.
-    pub(crate) fn find_sides(self, samples: &mut Samples, layer: usize) {
-        samples.find_sides(self.grid, self.source, self.isovalue, layer);
+    ///
+    /// # Errors
+    /// [`ExtractError::Unread`].
+    pub(crate) fn find_sides(self, samples: &mut Samples, layer: usize) -> Result<(), ExtractError> {
+        samples.find_sides(self.grid, self.source, self.isovalue, layer)
     }
 
     /// Takes the samples of a layer that cells need and sides did not. The sides of the layers next to it are known.

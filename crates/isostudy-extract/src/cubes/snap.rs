@@ -106,8 +106,7 @@ fn lowest_chosen(own: &Range<usize>) -> usize {
 
 impl Snapped<'_> {
     fn find_sides(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
-        self.sampling.find_sides(&mut slab.workspace.samples, layer);
-        Ok(())
+        self.sampling.find_sides(&mut slab.workspace.samples, layer)
     }
 
     fn fill(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {

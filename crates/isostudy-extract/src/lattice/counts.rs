@@ -150,7 +150,7 @@ impl Lattice {
         }
     }
 
-    /// `a xyz + b (xy + xz + yz) + c (x + y + z) + d`. No overflow: stored samples fit 32 bits.
+    /// `a xyz + b (xy + xz + yz) + c (x + y + z) + d`. No overflow: [`Lattice::MAX_SAMPLES`].
     fn polynomial(&self, [a, b, c, d]: [i64; 4]) -> u64 {
         let [x, y, z] = self.cells.map(i64::from);
         (a * x * y * z + b * (x * y + x * z + y * z) + c * (x + y + z) + d) as u64

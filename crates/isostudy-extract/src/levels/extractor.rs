@@ -153,7 +153,9 @@ impl LevelExtractor {
         let result = match source {
             Source::Field(field) => self.work(&Plain(field), &job, chunk),
             Source::Study(field) => self.work(field, &job, chunk),
-            Source::Samples(_) | Source::Bricks(_) | Source::Window { .. } => Err(LevelError::NeedsField),
+            Source::Samples(_) | Source::Stored(_) | Source::Bricks(_) | Source::Window { .. } => {
+                Err(LevelError::NeedsField)
+            }
         };
         if result.is_err() {
             chunk.clear();

@@ -1,6 +1,7 @@
 //! A volume's own cells: the surface between its samples, in the space its steps are in.
 
 use glam::Vec3;
+use isostudy_field::StoredSamples;
 use isostudy_mesh::Bounds;
 
 use crate::active::{ActiveError, Bricks, GridSamples};
@@ -110,6 +111,22 @@ impl<'a> VolumeCells<'a> {
         execution: &Execution,
     ) -> Result<Extraction, VolumeCellsError> {
         self.extract_from(Source::Bricks(bricks), method, extractor, isovalue, execution)
+    }
+
+    /// Extracts the same mesh, to the byte, of samples that are not in memory: a few layers of them are, while the surface is made. `values`
+    /// are not looked at, and need not be there.
+    ///
+    /// # Errors
+    /// [`VolumeCellsError`], [`ExtractError::StoredCounts`] and [`ExtractError::Unread`] among them.
+    pub fn extract_stored(
+        &self,
+        samples: &dyn StoredSamples,
+        method: &Method,
+        extractor: &mut Extractor,
+        isovalue: f32,
+        execution: &Execution,
+    ) -> Result<Extraction, VolumeCellsError> {
+        self.extract_from(Source::Stored(samples), method, extractor, isovalue, execution)
     }
 
     fn extract_from(

@@ -1,19 +1,20 @@
 //! The layers in sight of the extractors of cubes, cut or not: sides of all points, and samples where they were taken.
 //!
 //! A field is called where its bounds leave the side of a point open ([`StudyField::range`], [`StudyField::slope`]), and later where
-//! an extractor wants more. All other points have no sample.
+//! an extractor wants more. All other points have no sample. Stored samples are read layer by layer, all of them.
 
 use std::collections::TryReserveError;
 
 use isostudy_field::StudyField;
 
+use crate::extraction::ExtractError;
 use crate::memory::reset;
 use crate::sampling::bits::{set_above, set_range};
 use crate::sampling::in_sight::{State, Values};
 use crate::sampling::line::{Columns, Gaps, Line};
 use crate::sampling::rows::Rows;
 use crate::sampling::tiles::{Points, Span, Tile, Tiles};
-use crate::source::Sampler;
+use crate::source::{Sampler, read_layer};
 
 /// Points in rows, as many in one as in the next, some columns of which may have none.
 pub(crate) trait PointRows: Points {
@@ -33,7 +34,9 @@ pub(crate) trait PointRows: Points {
 /// A few layers of samples and sides.
 #[derive(Debug, Default)]
 pub(crate) struct Window<const BEFORE: usize = 0> {
-    /// Of a field that is called; without room where samples are given.
+    /// A ring of layers of samples; without room where they are given.
+    values: Vec<f32>,
+    /// Of a field that is called; without room where it is not.
     called: Called<BEFORE>,
     /// 1 inside. Columns without a point have any.
     pub(crate) sides: Rows<BEFORE>,
@@ -45,14 +48,12 @@ pub(crate) struct Window<const BEFORE: usize = 0> {
     slots: usize,
 }
 
-/// A ring of layers of samples, and a bit for each that was taken.
+/// What is known of samples that are asked for one by one: a bit for each that was taken, in a ring of layers.
 #[derive(Debug, Default)]
 struct Called<const BEFORE: usize> {
-    values: Vec<f32>,
     taken: Rows<BEFORE>,
     tiles: Tiles,
     gaps: Gaps,
-    slots: usize,
 }
 
 impl<const BEFORE: usize> Window<BEFORE> {
@@ -63,10 +64,15 @@ impl<const BEFORE: usize> Window<BEFORE> {
         source: Sampler,
         slots: usize,
     ) -> Result<(), TryReserveError> {
-        let [_, ny, _] = grid.size();
+        let [nx, ny, _] = grid.size();
         (self.rows, self.slots) = (ny, slots);
-        if matches!(source, Sampler::Field(_)) {
-            self.called.fit(grid, slots)?;
+        match source {
+            Sampler::Given { .. } => {}
+            Sampler::Field(_) => {
+                self.called.fit(grid, slots)?;
+                reset(&mut self.values, nx * ny * slots, 0.0)?;
+            }
+            Sampler::Stored(_) => reset(&mut self.values, nx * ny * slots, 0.0)?,
         }
         reset(&mut self.states, ny * slots, State::Outside)?;
         reset(&mut self.wanted, grid.words(), 0)?;
@@ -77,7 +83,7 @@ impl<const BEFORE: usize> Window<BEFORE> {
         let size = grid.size();
         match source {
             Sampler::Given { values, .. } => Values::new(values, size, size[2]),
-            Sampler::Field(_) => Values::new(&self.called.values, size, self.slots),
+            Sampler::Field(_) | Sampler::Stored(_) => Values::new(&self.values, size, self.slots),
         }
     }
 
@@ -100,11 +106,25 @@ impl<const BEFORE: usize> Window<BEFORE> {
     }
 
     /// Finds the sides of a layer, with as few samples as may be.
-    pub(crate) fn find_sides(&mut self, grid: &impl PointRows, source: Sampler, isovalue: f32, layer: usize) {
+    ///
+    /// # Errors
+    /// [`ExtractError::Unread`].
+    pub(crate) fn find_sides(
+        &mut self,
+        grid: &impl PointRows,
+        source: Sampler,
+        isovalue: f32,
+        layer: usize,
+    ) -> Result<(), ExtractError> {
         let [nx, ny, _] = grid.size();
         let called = &mut self.called;
-        if let Sampler::Field(field) = source {
-            called.tiles.turn_to(layer, grid, field, isovalue);
+        let slot = layer % self.slots * ny;
+        match source {
+            Sampler::Given { .. } => {}
+            Sampler::Field(field) => called.tiles.turn_to(layer, grid, field, isovalue),
+            Sampler::Stored(samples) => {
+                read_layer(samples, layer, &mut self.values[slot * nx..][..nx * ny])?;
+            }
         }
         for row in 0..ny {
             let sides = self.sides.row_mut(row, layer);
@@ -118,6 +138,7 @@ impl<const BEFORE: usize> Window<BEFORE> {
                     let values = &values[(layer * ny + row) * nx..][..nx];
                     set_above(values, isovalue, sides);
                 }
+                Sampler::Stored(_) => set_above(&self.values[(slot + row) * nx..][..nx], isovalue, sides),
                 Sampler::Field(field) => {
                     called.taken.row_mut(row, layer).fill(0);
                     match called.tiles.row(row).0 {
@@ -126,15 +147,19 @@ impl<const BEFORE: usize> Window<BEFORE> {
                             state = State::Inside;
                             set_range(sides, 0, nx);
                         }
-                        _ => called.sample(grid, field, isovalue, [row, layer], sides),
+                        _ => {
+                            let values = &mut self.values[(slot + row) * nx..][..nx];
+                            called.sample(grid, field, isovalue, [row, layer], values, sides);
+                        }
                     }
                 }
             }
             if state == State::Mixed {
                 state = State::of(sides, grid.columns(row, layer).2, nx);
             }
-            self.states[layer % self.slots * ny + row] = state;
+            self.states[slot + row] = state;
         }
+        Ok(())
     }
 
     /// Takes the samples of a row that are wanted and not there yet.
@@ -145,9 +170,9 @@ impl<const BEFORE: usize> Window<BEFORE> {
         [row, layer]: [usize; 2],
         wanted: &[u64],
     ) {
-        let Called { values, taken, gaps, slots, .. } = &mut self.called;
+        let Called { taken, gaps, .. } = &mut self.called;
         let [nx, ny, _] = grid.size();
-        let values = &mut values[(layer % *slots * ny + row) * nx..][..nx];
+        let values = &mut self.values[(layer % self.slots * ny + row) * nx..][..nx];
         gaps.clear();
         for (word, (taken, &wanted)) in taken.row_mut(row, layer).iter_mut().zip(wanted).enumerate() {
             gaps.note(word, wanted, taken);
@@ -159,10 +184,8 @@ impl<const BEFORE: usize> Window<BEFORE> {
 impl<const BEFORE: usize> Called<BEFORE> {
     fn fit(&mut self, grid: &impl PointRows, slots: usize) -> Result<(), TryReserveError> {
         let [nx, ny, _] = grid.size();
-        self.slots = slots;
         self.tiles.fit(grid)?;
         self.gaps.fit(nx)?;
-        reset(&mut self.values, nx * ny * slots, 0.0)?;
         self.taken.fit(grid.words(), ny, slots)
     }
 
@@ -173,9 +196,9 @@ impl<const BEFORE: usize> Called<BEFORE> {
         field: &dyn StudyField,
         isovalue: f32,
         [row, layer]: [usize; 2],
+        values: &mut [f32],
         sides: &mut [u64],
     ) {
-        let [nx, ny, _] = grid.size();
         let (spans, known) = self.tiles.row(row);
         let (columns, with_points, _) = grid.columns(row, layer);
         let mut line = Line {
@@ -185,7 +208,7 @@ impl<const BEFORE: usize> Called<BEFORE> {
             x: grid.at(0),
             y: grid.at(1)[row],
             z: grid.at(2)[layer],
-            values: &mut self.values[(layer % self.slots * ny + row) * nx..][..nx],
+            values,
             taken: self.taken.row_mut(row, layer),
             sides,
         };

@@ -105,8 +105,7 @@ impl ByCell<'_> {
     }
 
     fn find_sides(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
-        slab.workspace.samples.find_sides(self.sampling(), layer);
-        Ok(())
+        slab.workspace.samples.find_sides(self.sampling(), layer)
     }
 
     fn find_crossings(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {

@@ -5,7 +5,7 @@ mod files;
 mod made;
 mod promises;
 mod shrink;
-mod volume;
+pub(crate) mod volume;
 
 use isostudy_extract::{Macet, Method, Preset, presets};
 use proptest::prelude::*;

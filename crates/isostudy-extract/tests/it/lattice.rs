@@ -72,8 +72,19 @@ fn bounds_must_be_finite_and_ordered_on_every_axis() {
 fn absurd_sizes_are_refused_or_can_be_seen() {
     let refused = |bounds, spacing| body_centred(bounds, spacing).unwrap_err();
     assert!(matches!(refused(UNIT, 1e-8), LatticeError::TooManyCells { axis: 'x', .. }));
-    let samples = 20_002u128.pow(2) * 40_003;
-    assert_eq!(refused(UNIT, 1e-4), LatticeError::TooManySamples { samples, limit: u32::MAX.into() });
+    // Far more than a 32-bit number can name: a few layers are held.
+    let fine = body_centred(UNIT, 1e-4).unwrap();
+    assert_eq!(fine.stored_samples(), 20_002 * 20_002 * 40_003);
+    assert_eq!(fine.tetrahedra(), 12 * 20_000u64.pow(3) + 4 * 3 * 20_000u64.pow(2));
+    assert!(fine.streaming_bytes(1) < 64 << 30, "{}", fine.streaming_bytes(1));
+    let limits = [Lattice::MAX_SAMPLES, Lattice::MAX_SAMPLES_PER_LAYER];
+    let (samples, limit) = (80_002u128.pow(2), limits[1]);
+    let flat = Bounds { max: Vec3::new(1.0, 1.0, -0.9), ..UNIT };
+    assert_eq!(refused(flat, 2.5e-5), LatticeError::TooManyInLayer { samples, limit });
+    let samples = 60_000u128.pow(2) * 16_000_000;
+    let tall = Bounds { min: Vec3::ZERO, max: Vec3::new(59_999.0, 59_999.0, 15_999_999.0) };
+    let error = Lattice::try_new(Arrangement::SimpleCubic, tall, 1.0).unwrap_err();
+    assert_eq!(error, LatticeError::TooManySamples { samples, limit: limits[0] });
     let huge = Bounds { min: Vec3::splat(f32::MIN), max: Vec3::splat(f32::MAX) };
     assert!(matches!(refused(huge, 1.0), LatticeError::TooManyCells { .. }));
     assert!(matches!(refused(UNIT, f32::MAX), LatticeError::OutOfRange { .. }));

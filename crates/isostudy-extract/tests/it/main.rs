@@ -39,6 +39,7 @@ mod seams;
 mod sharp_edges;
 mod snap;
 mod sphere;
+mod stored;
 mod survey;
 mod symmetries;
 mod terrain;

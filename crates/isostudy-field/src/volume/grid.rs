@@ -4,7 +4,8 @@ use glam::{DMat3, DVec3};
 use isostudy_mesh::Bounds;
 
 use super::VolumeFieldError;
-use super::ranges::Ranges;
+use super::bricks::Bricks;
+use super::ranges::{EDGES, Ranges};
 
 /// A regular grid of samples: all that can be said of a volume before its samples are there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,26 +82,16 @@ impl VolumeGrid {
         axes.iter().all(|step| step.abs().max_element() >= (1.0 - 1e-9) * step.length())
     }
 
-    /// Bytes that a [`VolumeField`](super::VolumeField) keeps beside the samples: the ranges of its bricks.
+    /// Bytes that a [`VolumeField`](super::VolumeField) keeps beside samples in memory: the ranges of their bricks.
     pub fn range_bytes(&self) -> u64 {
-        Ranges::bytes(self.counts)
+        Ranges::bytes(self.counts, EDGES[0])
     }
 
-    pub(super) fn strides(&self) -> [usize; 3] {
-        [1, self.counts[0], self.counts[0] * self.counts[1]]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::ranges::Ranges;
-
-    #[test]
-    fn ranges_take_what_was_said_before_there_were_any() {
-        for counts in [[2, 2, 2], [5, 6, 7], [9, 2, 33], [70, 40, 17]] {
-            let values = vec![0.0; counts.iter().product()];
-            let made = Ranges::new(counts, &values).unwrap();
-            assert_eq!(Ranges::bytes(counts), made.held() as u64, "{counts:?}");
-        }
+    /// Bytes that a field of samples that are [not in memory](super::VolumeField::try_stored) keeps, which was given `memory_bytes`: bricks of
+    /// samples, and their ranges.
+    pub fn stored_bytes(&self, memory_bytes: u64) -> [u64; 2] {
+        let half = memory_bytes / 2;
+        let ranges = Ranges::bytes(self.counts, Ranges::edge_within(self.counts, half));
+        [Bricks::bytes(self.counts, half), ranges]
     }
 }

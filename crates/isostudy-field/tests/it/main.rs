@@ -1,5 +1,6 @@
 //! Fields, from outside.
 
 mod gradients;
+mod stored;
 mod terrain;
 mod volume;

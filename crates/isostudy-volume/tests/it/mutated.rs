@@ -1,6 +1,7 @@
 //! Files damaged in every way: no panic, and what is read all the same is sound.
 
 use crate::files::*;
+use isostudy_volume::Problem;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -78,13 +79,42 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Pcg64) {
 fn run(rounds: u64, seed: u64) {
     let (folder, corpus) = (Folder::new(), corpus());
     folder.write("a.data", bytes("u8", false));
-    let (mut read, mut refused) = (0, 0);
+    let (mut read, mut refused, mut in_parts) = (0, 0, 0);
     for round in 0..rounds {
         let mut random = Pcg64::seed_from_u64(seed + round);
         let (name, mut bytes) = corpus[round as usize % corpus.len()].clone();
         mutate(&mut bytes, &mut random);
         folder.write(name, &bytes);
-        match isostudy_volume::read(&folder.path(name), 1 << 20) {
+        let read_whole = isostudy_volume::read(&folder.path(name), 1 << 20);
+        // What can be read in parts has the same samples, or the same fault.
+        if let Ok(unread) = isostudy_volume::open(&folder.path(name))
+            && unread.is_raw()
+            && unread.memory_bytes() <= 1 << 20
+        {
+            in_parts += 1;
+            match (unread.stored(), &read_whole) {
+                (Ok(stored), Ok(volume)) => {
+                    let mut values = vec![0.0; volume.values.len()];
+                    stored.read_box([0; 3], volume.counts, &mut values).unwrap();
+                    let is_same =
+                        values.iter().map(|v| v.to_bits()).eq(volume.values.iter().map(|v| v.to_bits()));
+                    assert!(is_same, "round {round} of {seed}");
+                }
+                (Err(of_parts), Err(of_whole)) => {
+                    assert_eq!(of_parts.to_string(), of_whole.to_string(), "round {round} of {seed}");
+                }
+                (Ok(stored), Err(of_whole)) if matches!(*of_whole.problem, Problem::TooLarge { .. }) => {
+                    let mut values = vec![0.0; stored.frame().counts.iter().product()];
+                    let error = stored.read_box([0; 3], stored.frame().counts, &mut values).unwrap_err();
+                    assert!(
+                        matches!(*error.problem, Problem::TooLargeHere { .. }),
+                        "round {round} of {seed}"
+                    );
+                }
+                (parts, whole) => panic!("round {round} of {seed}: {parts:?}, {whole:?}"),
+            }
+        }
+        match read_whole {
             Ok(volume) => {
                 let [x, y, z] = volume.counts;
                 assert_eq!(x * y * z, volume.values.len(), "round {round} of {seed}");
@@ -99,6 +129,7 @@ fn run(rounds: u64, seed: u64) {
         }
     }
     assert!(read > rounds / 20 && refused > rounds / 20, "{read} read, {refused} refused");
+    assert!(in_parts > rounds / 20, "{in_parts} in parts");
 }
 
 #[test]

@@ -25,6 +25,7 @@ use isostudy_field::{Counted, FieldCache, StudyField};
 use isostudy_mesh::{MeshFormat, TriangleMesh, corner_normals};
 use isostudy_raster::{Camera, Look, Shading, Viewport};
 use isovalues::Isovalues;
+use own_cells::OfOwnCells;
 use quality_report::{Cells, QualityReport};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -170,16 +171,20 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     let method = arguments.method();
     let execution = Execution { threads: arguments.threads as usize };
     let volume = arguments.source.volume_alone().filter(|_| method.is_of_cubes());
+    let is_measured = arguments.quality || arguments.json;
     let (extraction, source, cells, counts) = match volume {
         Some(path) => {
-            let (extraction, own) = own_cells::extract(&arguments.source, path, &method, &execution)?;
+            let OfOwnCells { extraction, source, cells } =
+                own_cells::extract(&arguments.source, path, &method, &execution, is_measured)?;
             let counts = records::counts(&extraction.counts);
-            (extraction, own.source, Cells::Own { counts: own.cells, is_turned: own.is_turned }, counts)
+            (extraction, source, cells, counts)
         }
-        None => on_a_grid(arguments, &method, &execution)?,
+        None => {
+            let (extraction, source, cells, counts) = on_a_grid(arguments, &method, &execution)?;
+            (extraction, Some(source), cells, counts)
+        }
     };
-    let grid = source.grid();
-    if extraction.mesh.triangles.is_empty() {
+    if let Some(source) = source.as_ref().filter(|_| extraction.mesh.triangles.is_empty()) {
         bail!(source.no_surface_of(&method));
     }
     write_whole_by(out, |file| {
@@ -203,7 +208,7 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
         && let Cells::Own { is_turned: true, .. } = &cells
         && let Some(found) = open_edges(&extraction.mesh)
     {
-        let name = &source.name;
+        let name = volume.unwrap_or(out).display();
         tell!(
             "{name}: the grid is turned against the axes, and this method extracts on the volume's own cells. So the surface is open \
              where it leaves them ({found}). --close closes it"
@@ -212,17 +217,18 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if !arguments.json {
         tell_made(out, extraction.counts.triangles, extraction.counts.vertices, extraction.times.total());
     }
-    if arguments.quality || arguments.json {
-        let accuracy =
-            isostudy_extract::accuracy(&extraction.mesh, &*source.field, source.isovalue, &grid, &execution)?;
-        let report = QualityReport::new(method, &source, cells, &extraction, counts, &accuracy);
+    if let Some(source) = source.as_ref().filter(|_| is_measured) {
+        let (field, isovalue, grid) = (&*source.field, source.isovalue, source.grid());
+        let accuracy = isostudy_extract::accuracy(&extraction.mesh, field, isovalue, &grid, &execution);
+        let accuracy = source.vouch(accuracy.map_err(anyhow::Error::from))?;
+        let report = QualityReport::new(method, source, cells, &extraction, counts, &accuracy);
         say(&if arguments.json { serde_json::to_string_pretty(&report)? } else { report.to_text()? })?;
     }
     // With --json standard output is JSON and nothing else.
     if !arguments.json {
         say(&out.display().to_string())?;
     }
-    if source.is_closed
+    if source.is_some_and(|source| source.is_closed)
         && let Some(found) = open_edges(&extraction.mesh)
     {
         tell!("isostudy: {}: the surface was to be closed and has {found}", out.display());
@@ -251,8 +257,9 @@ fn on_a_grid(
     let before = Held::now();
     let source = arguments
         .source
-        .read_for(method, execution)?
+        .read_in_file_for(method, execution)?
         .context("one of a study, --field, --volume and --mesh is needed")?;
+    let execution = &source.execution(execution);
     let grid = source.grid();
     let limit = arguments.source.limit();
     // It names the box itself.
@@ -263,7 +270,7 @@ fn on_a_grid(
     let study: &dyn StudyField = &field;
     let extract =
         || Ok(method.extract(&mut Extractor::new(), study.into(), &grid, source.isovalue, execution)?);
-    let extraction = limit.hold(before, extract)?;
+    let extraction = source.vouch(limit.hold(before, extract))?;
     let counts = records::with_calls(records::counts(&extraction.counts), &field);
     Ok((extraction, source, Cells::Cubes(method.cells(&grid)?), counts))
 }

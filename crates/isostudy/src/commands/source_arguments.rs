@@ -43,7 +43,8 @@ pub(crate) struct SourceArguments {
     /// Take a mesh with holes: inside is what is seen from behind in most directions
     #[arg(long, conflicts_with_all = ["field", "volume"])]
     allow_open: bool,
-    /// Most memory for a volume's samples, the lattice, and the mesh with what finishing it takes. Such as 500MB or 16GiB
+    /// Most memory for a volume's samples, the lattice, and the mesh with what finishing it takes. Such as 500MB or 16GiB. `extract` reads
+    /// parts of a raw volume that does not fit
     #[arg(long, value_name = "SIZE", default_value = memory::DEFAULT, value_parser = memory::size)]
     memory: u64,
 }
@@ -81,6 +82,7 @@ impl SourceArguments {
             allow_open: self.allow_open,
             limit: self.limit(),
             method: None,
+            in_file: false,
         }
     }
 
@@ -98,6 +100,14 @@ impl SourceArguments {
     /// The same, and if it does not fit.
     pub(super) fn read_for(&self, method: &Method, execution: &Execution) -> Result<Option<Source>> {
         self.read_by(Options { method: Some((*method, *execution)), ..self.options() })
+    }
+
+    /// The same, and a volume that does not fit stays in its file.
+    ///
+    /// # Errors
+    /// The same.
+    pub(super) fn read_in_file_for(&self, method: &Method, execution: &Execution) -> Result<Option<Source>> {
+        self.read_by(Options { method: Some((*method, *execution)), in_file: true, ..self.options() })
     }
 
     fn read_by(&self, options: Options) -> Result<Option<Source>> {

@@ -1,13 +1,12 @@
 //! The corners of cubes, sampled when they are first asked for.
 
-use std::collections::TryReserveError;
-
 use super::Map;
 use crate::cubes::grid::CubeGrid;
 use crate::cubes::vertices::corner_of;
+use crate::extraction::ExtractError;
 use crate::source::Sampler;
 
-/// Samples by place. Of a field each is taken once.
+/// Samples by place. Of a field each is taken once, and of stored samples each is read once.
 pub(super) struct Corners<'a> {
     pub(super) grid: &'a CubeGrid<'a>,
     source: Sampler<'a>,
@@ -38,27 +37,33 @@ impl<'a> Corners<'a> {
     }
 
     /// Whether a point is inside.
-    pub(super) fn is_inside(&mut self, place: [usize; 3]) -> Result<bool, TryReserveError> {
+    ///
+    /// # Errors
+    /// [`ExtractError::NoMemoryForMesh`], [`ExtractError::Unread`].
+    pub(super) fn is_inside(&mut self, place: [usize; 3]) -> Result<bool, ExtractError> {
+        let number = self.number(place);
+        if matches!(self.source, Sampler::Given { .. }) || self.taken.contains_key(&number) {
+            return Ok(self.value(place) > self.isovalue);
+        }
         let value = match self.source {
-            Sampler::Given { .. } => self.value(place),
-            Sampler::Field(field) => {
-                let number = self.number(place);
-                match self.taken.get(&number) {
-                    Some(&value) => value,
-                    None => {
-                        self.taken.try_reserve(1)?;
-                        let value = field.sample(self.grid.position(place));
-                        self.taken.insert(number, value);
-                        value
-                    }
-                }
+            Sampler::Given { values, .. } => values[number as usize],
+            Sampler::Field(field) => field.sample(self.grid.position(place)),
+            Sampler::Stored(samples) => {
+                let mut value = [0.0];
+                samples.read_box(place, [1; 3], &mut value).map_err(ExtractError::Unread)?;
+                value[0]
             }
         };
+        self.taken.try_reserve(1)?;
+        self.taken.insert(number, value);
         Ok(value > self.isovalue)
     }
 
     /// The corners of a cell that are inside, as bits.
-    pub(super) fn inside(&mut self, cell: [usize; 3]) -> Result<u8, TryReserveError> {
+    ///
+    /// # Errors
+    /// The same.
+    pub(super) fn inside(&mut self, cell: [usize; 3]) -> Result<u8, ExtractError> {
         let mut inside = 0;
         for corner in 0..8 {
             inside |= u8::from(self.is_inside(corner_of(cell, corner))?) << corner;
@@ -71,7 +76,7 @@ impl<'a> Corners<'a> {
         let number = self.number(place);
         match self.source {
             Sampler::Given { values, .. } => values[number as usize],
-            Sampler::Field(_) => self.taken[&number],
+            Sampler::Field(_) | Sampler::Stored(_) => self.taken[&number],
         }
     }
 }

@@ -1,9 +1,8 @@
 //! Where continuation begins: near points that are given, or where a search finds that the surface crosses a line.
 
-use std::collections::TryReserveError;
-
 use super::Continued;
 use super::corners::Corners;
+use crate::extraction::ExtractError;
 use crate::memory::push;
 use crate::wording::in_words;
 
@@ -91,10 +90,7 @@ impl From<Seeds> for Vec<[f32; 3]> {
 }
 
 /// The cells to begin at; one may be there several times.
-pub(super) fn cells(
-    continued: &Continued,
-    corners: &mut Corners,
-) -> Result<Vec<[usize; 3]>, TryReserveError> {
+pub(super) fn cells(continued: &Continued, corners: &mut Corners) -> Result<Vec<[usize; 3]>, ExtractError> {
     let mut cells = Vec::new();
     let points = continued.seeds.points();
     let mut apart = continued.search as usize;
@@ -112,7 +108,7 @@ pub(super) fn cells(
 
 /// The cell of a point, if the surface crosses it. Else the nearest along the lines of lattice edges through the cell's lowest corner, in
 /// steps of a cell, x before y before z and up before down.
-fn near(point: [f32; 3], corners: &mut Corners) -> Result<Option<[usize; 3]>, TryReserveError> {
+fn near(point: [f32; 3], corners: &mut Corners) -> Result<Option<[usize; 3]>, ExtractError> {
     let cells = corners.cells();
     let cell = [0, 1, 2].map(|axis| {
         let not_beyond = corners.grid.at[axis].partition_point(|&at| at <= point[axis]);
@@ -142,7 +138,7 @@ fn near(point: [f32; 3], corners: &mut Corners) -> Result<Option<[usize; 3]>, Tr
 
 /// Lines of lattice edges, so many cells apart, and the last ones. On each of them a sample every so many cells, and the last one: where
 /// two that follow each other are on different sides, halving finds an edge between them that the surface crosses.
-fn search(apart: usize, corners: &mut Corners, found: &mut Vec<[usize; 3]>) -> Result<(), TryReserveError> {
+fn search(apart: usize, corners: &mut Corners, found: &mut Vec<[usize; 3]>) -> Result<(), ExtractError> {
     let cells = corners.cells();
     let stops = cells.map(|n| (0..n).step_by(apart).chain([n]).collect::<Vec<usize>>());
     for &z in &stops[2] {
@@ -171,7 +167,7 @@ fn crossed_edge(
     axis: usize,
     end: usize,
     corners: &mut Corners,
-) -> Result<Option<[usize; 3]>, TryReserveError> {
+) -> Result<Option<[usize; 3]>, ExtractError> {
     let at = |i: usize| {
         let mut place = from;
         place[axis] = i;

@@ -1,7 +1,5 @@
 //! From cube to cube.
 
-use std::collections::TryReserveError;
-
 use super::Map;
 use super::corners::Corners;
 use crate::execution::control::Control;
@@ -67,7 +65,7 @@ fn enter(
     visited: &mut Map<u8>,
     left: &mut Vec<[usize; 3]>,
     corners: &mut Corners,
-) -> Result<(), TryReserveError> {
+) -> Result<(), ExtractError> {
     let number = corners.number(cell);
     if visited.contains_key(&number) {
         return Ok(());

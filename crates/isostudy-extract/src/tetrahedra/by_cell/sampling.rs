@@ -4,6 +4,7 @@
 use std::collections::TryReserveError;
 
 use super::grid::{CutGrid, LINES};
+use crate::extraction::ExtractError;
 use crate::sampling::bits::between;
 use crate::sampling::in_sight::{State, Values};
 use crate::sampling::rows::{Rows, shifted};
@@ -46,13 +47,20 @@ impl Samples {
     }
 
     /// Finds the sides of a layer, with as few samples as may be.
-    pub(super) fn find_sides(&mut self, Sampling { grid, source, isovalue }: Sampling, layer: usize) {
+    ///
+    /// # Errors
+    /// [`ExtractError::Unread`].
+    pub(super) fn find_sides(
+        &mut self,
+        Sampling { grid, source, isovalue }: Sampling,
+        layer: usize,
+    ) -> Result<(), ExtractError> {
         // Bricks are of the corners of cubes; here a row may have columns without a point.
         let source = match source {
             Sampler::Given { values, .. } => Sampler::Given { values, bricks: None },
-            field @ Sampler::Field(_) => field,
+            other @ (Sampler::Field(_) | Sampler::Stored(_)) => other,
         };
-        self.window.find_sides(grid, source, isovalue, layer);
+        self.window.find_sides(grid, source, isovalue, layer)
     }
 
     /// Finds the points of a layer that have a crossing, and takes their samples. The sides of all neighbours are known.

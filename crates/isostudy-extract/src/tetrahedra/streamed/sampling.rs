@@ -1,6 +1,6 @@
 //! Sampling pass: the signs of a layer, and the samples at crossings that no sign needed.
 //!
-//! Given samples only have their signs taken. A field is called where its bounds leave the side of a point open; when
+//! Given samples only have their signs taken, and so have those of a layer that was read. A field is called where its bounds leave the side of a point open; when
 //! the signs of all neighbours are known, it is called again at the points with a crossing whose side did not need
 //! their sample. All other points have none.
 
@@ -37,23 +37,40 @@ pub(super) struct FieldSamples {
     gaps: Gaps,
 }
 
-/// The signs of a layer of given samples.
-pub(super) fn signs_of(grid: &UniformGrid, values: &[f32], isovalue: f32, layer: usize, signs: &mut Signs) {
+/// The signs of a layer of samples that are all there.
+pub(super) fn signs_of(
+    grid: &UniformGrid,
+    Samples { values, slots }: Samples,
+    isovalue: f32,
+    layer: usize,
+    signs: &mut Signs,
+) {
     let [points, rows] = grid.layout.used(grid.layout.kind(layer));
     let [stride, all_rows, _] = grid.size;
     for row in 0..rows {
-        let start = (layer * all_rows + row) * stride;
+        let start = ((layer + 1) % slots * all_rows + row) * stride;
         signs.fill(row, layer, &values[start..start + points], isovalue);
     }
 }
 
 impl FieldSamples {
     pub(super) fn fit(&mut self, grid: &UniformGrid, slots: usize) -> Result<(), TryReserveError> {
-        self.slots = slots;
-        refill(&mut self.values, grid.layer_len() * slots, 0.0)?;
+        self.fit_values(grid, slots)?;
         refill(&mut self.taken, grid.words * grid.size[1] * slots, 0)?;
         self.gaps.fit(grid.size[0])?;
         self.tiles.fit(grid)
+    }
+
+    /// Makes room for the samples alone, of layers that are read as a whole.
+    pub(super) fn fit_values(&mut self, grid: &UniformGrid, slots: usize) -> Result<(), TryReserveError> {
+        self.slots = slots;
+        refill(&mut self.values, grid.layer_len() * slots, 0.0)
+    }
+
+    /// The samples of a layer, to be read.
+    pub(super) fn layer_mut(&mut self, grid: &UniformGrid, layer: usize) -> &mut [f32] {
+        let length = grid.layer_len();
+        &mut self.values[layer % self.slots * length..][..length]
     }
 
     pub(super) fn samples(&self) -> Samples<'_> {

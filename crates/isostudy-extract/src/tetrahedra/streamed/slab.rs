@@ -15,7 +15,7 @@ use crate::extraction::ExtractError;
 use crate::placement::CrossingPlacer;
 use crate::placement::spot::Apart;
 use crate::slabs::{Pass, Slab, Stage, Streamed};
-use crate::source::{Request, Sampler};
+use crate::source::{Request, Sampler, read_layer};
 
 /// What all slabs of an extraction share.
 pub(super) struct Points<'a, R> {
@@ -38,11 +38,11 @@ pub(super) struct Workspace {
 
 impl<R: ClusterRule> Points<'_, R> {
     /// How many layers signs are ahead of the samples at crossings. A crossing is known when the signs of all neighbours
-    /// are; given samples are there before that.
+    /// are; given samples are there before that, and so are those that are read.
     fn lead(&self) -> usize {
         match self.request.source {
             Sampler::Field(_) => self.grid.reach,
-            Sampler::Given { .. } => 0,
+            Sampler::Given { .. } | Sampler::Stored(_) => 0,
         }
     }
 
@@ -58,8 +58,10 @@ impl<R: ClusterRule> Streamed for Points<'_, R> {
 
     fn fit(&self, workspace: &mut Workspace) -> Result<(), TryReserveError> {
         let slots = self.grid.slots() + self.lead();
-        if matches!(self.request.source, Sampler::Field(_)) {
-            workspace.samples.fit(self.grid, slots)?;
+        match self.request.source {
+            Sampler::Given { .. } => {}
+            Sampler::Field(_) => workspace.samples.fit(self.grid, slots)?,
+            Sampler::Stored(_) => workspace.samples.fit_values(self.grid, slots)?,
         }
         workspace.signs.fit(self.grid, slots)?;
         workspace.records.fit(self.grid)
@@ -82,9 +84,15 @@ impl<R: ClusterRule> Streamed for Points<'_, R> {
 impl<R: ClusterRule> Points<'_, R> {
     fn find_signs(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
         let Workspace { samples, signs, .. } = &mut *slab.workspace;
+        let isovalue = self.request.settings.isovalue;
         match (self.request.source, self.field_pass()) {
             (Sampler::Given { values, .. }, _) => {
-                signs_of(self.grid, values, self.request.settings.isovalue, layer, signs);
+                let all = Samples { values, slots: self.grid.size[2] };
+                signs_of(self.grid, all, isovalue, layer, signs);
+            }
+            (Sampler::Stored(stored), _) => {
+                read_layer(stored, layer, samples.layer_mut(self.grid, layer))?;
+                signs_of(self.grid, samples.samples(), isovalue, layer, signs);
             }
             (Sampler::Field(_), Some(pass)) => samples.find_signs(pass, layer, signs),
             (Sampler::Field(_), None) => unreachable!("made for a field"),
@@ -104,7 +112,7 @@ impl<R: ClusterRule> Points<'_, R> {
         let Slab { own, workspace: Workspace { samples, signs, records }, vertices, piece, .. } = slab;
         let samples = match request.source {
             Sampler::Given { values, .. } => Samples { values, slots: grid.size[2] },
-            Sampler::Field(_) => samples.samples(),
+            Sampler::Field(_) | Sampler::Stored(_) => samples.samples(),
         };
         let (placer, isovalue) = (placer.as_ref(), request.settings.isovalue);
         let has_more = placer.is_some() || has_trace;

@@ -7,21 +7,21 @@ use crate::fields::Numbers;
 
 /// Samples, the isovalue, and how the volume is cut into chunks.
 #[derive(Debug, Clone)]
-pub(super) struct Volume {
+pub(crate) struct Volume {
     /// Samples along each axis, two at least.
-    pub(super) counts: [usize; 3],
+    pub(crate) counts: [usize; 3],
     /// All of them, x fastest.
-    pub(super) values: Vec<f32>,
-    pub(super) origin: [f64; 3],
+    pub(crate) values: Vec<f32>,
+    pub(crate) origin: [f64; 3],
     /// From one sample to the next along each axis.
-    pub(super) steps: [[f64; 3]; 3],
-    pub(super) isovalue: f32,
+    pub(crate) steps: [[f64; 3]; 3],
+    pub(crate) isovalue: f32,
     /// How many cells more than half of the box's the first chunks have.
-    pub(super) chunk: u32,
+    pub(crate) chunk: u32,
     /// Of the eight chunks round the middle those that are of the finer level, one bit an octant.
-    pub(super) fine: u32,
+    pub(crate) fine: u32,
     /// Threads that must not show. With one nothing is asked, as most times: threads take longer to start than all else.
-    pub(super) threads: usize,
+    pub(crate) threads: usize,
 }
 
 /// One unit along each axis.
@@ -50,7 +50,7 @@ const ODD: [f32; 12] = [
 
 impl Volume {
     /// Of a seed.
-    pub(super) fn random(seed: u64) -> Self {
+    pub(crate) fn random(seed: u64) -> Self {
         let mut numbers = Numbers::new(seed);
         // Two draws of three are small: most of what goes wrong does so in a few cells.
         let mut counts = [(); 3].map(|()| 2 + numbers.below(MOST - 1).min(numbers.below(MOST - 1)) as usize);

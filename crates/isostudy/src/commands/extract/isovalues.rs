@@ -1,7 +1,9 @@
 //! `isostudy extract --isovalues`: several surfaces of one volume, which is read once and whose ranges are found once.
 
 use super::super::source_arguments::finite;
+use super::own_cells::Layers;
 use super::{Arguments, open_edges};
+use crate::file_samples::{FileSamples, InFile, Parts, stays_in_file};
 use crate::memory::{Held, OfVolume};
 use crate::outcome::Outcome;
 use crate::source::{Inside, Options, values_of_samples};
@@ -13,10 +15,11 @@ use isostudy_extract::active::{ActiveCells, Bricks};
 use isostudy_extract::{Execution, Extraction, Extractor, Method, VolumeCells};
 use isostudy_field::StudyField;
 use isostudy_mesh::MeshFormat;
-use isostudy_volume::Frame;
+use isostudy_volume::{Frame, Unread};
 use serde::Serialize;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Where an isovalue goes in a file's name.
@@ -184,7 +187,12 @@ impl Sweep<'_> {
         let held = OfVolume::samples(&unread).with("the ranges of their bricks", Bricks::bytes_of(counts));
         if counts.iter().all(|&n| n > 1) {
             let grid = VolumeCells { counts, values: &[], origin, steps }.grid();
-            limit.check_method(&method, &grid, &self.execution, Some(held)).with_context(name)?;
+            let both = (held, OfVolume::in_file(&unread, 0));
+            let asked = (&method, &grid, &self.execution);
+            let in_file = stays_in_file(limit, &unread, both, Parts::Layers, asked).with_context(name)?;
+            if let Some(in_file) = in_file {
+                return self.on_own_cells_in_file(unread, &in_file, &method);
+            }
         }
         let mut volume = limit.read(unread, held)?;
         let values = values_of_samples(&volume.values);
@@ -209,9 +217,35 @@ impl Sweep<'_> {
         Ok((Some(ranges), surfaces, values))
     }
 
+    /// The same of a volume that stays in its file: it is read once for each isovalue, since no ranges of it are kept.
+    fn on_own_cells_in_file(&self, unread: Unread, in_file: &InFile, method: &Method) -> Result<Swept> {
+        let name = || self.path.display().to_string();
+        let (limit, before, options) = (self.arguments.source.limit(), Held::now(), self.options(0.0));
+        let frame = unread.frame();
+        let Frame { counts, origin, steps, .. } = frame;
+        let (samples, execution) = (Arc::new(FileSamples::open(unread, in_file)?), &in_file.execution);
+        let layers = Layers { samples: &samples, is_below: options.inside == Some(Inside::Below) };
+        let cells = VolumeCells { counts, values: &[], origin, steps };
+        let mut extractor = Extractor::new();
+        let surfaces = self.isovalues.iter().map(|&isovalue| {
+            let level = if layers.is_below { -isovalue } else { isovalue };
+            let extract = || Ok(cells.extract_stored(&layers, method, &mut extractor, level, execution)?);
+            let extraction = samples.vouch(limit.hold(before, extract).with_context(name))?;
+            self.files.keep(isovalue, &extraction, false)
+        });
+        let surfaces = surfaces.collect::<Result<Vec<_>>>()?;
+        let mut values = String::new();
+        if surfaces.iter().all(|surface| surface.file.is_none()) {
+            let own = options.of_own_cells_in_file(&samples, &frame, execution, &name())?;
+            own.source.values().clone_into(&mut values);
+        }
+        Ok((None, surfaces, values))
+    }
+
     fn on_a_grid(&self) -> Result<Swept> {
         let (before, asked) = (Held::now(), Some((self.method, self.execution)));
-        let read = Options { method: asked, ..self.options(0.0) }.read_volume(self.path)?;
+        let options = Options { method: asked, in_file: true, ..self.options(0.0) };
+        let read = options.read_volume(self.path)?;
         let mut extractor = Extractor::new();
         let mut values = String::new();
         let surfaces = self.isovalues.iter().map(|&isovalue| {
@@ -219,11 +253,12 @@ impl Sweep<'_> {
             let source = read.at(&options)?;
             let grid = source.grid();
             let field: &dyn StudyField = &*source.field;
+            let execution = source.execution(&self.execution);
             let extract = || {
                 let level = source.isovalue;
-                Ok(self.method.extract(&mut extractor, field.into(), &grid, level, &self.execution)?)
+                Ok(self.method.extract(&mut extractor, field.into(), &grid, level, &execution)?)
             };
-            let extraction = options.limit.hold(before, extract)?;
+            let extraction = source.vouch(options.limit.hold(before, extract))?;
             source.values().clone_into(&mut values);
             self.files.keep(isovalue, &extraction, source.is_closed)
         });

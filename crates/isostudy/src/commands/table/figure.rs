@@ -59,6 +59,7 @@ fn ours(limit: Limit) -> Result<Vec<Source>> {
         allow_open: false,
         limit,
         method: None,
+        in_file: false,
     };
     let cube = |half: f32| Bounds { min: Vec3::splat(-half), max: Vec3::splat(half) };
     let mut sources = Vec::new();
