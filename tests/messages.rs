@@ -70,7 +70,7 @@ const STUDY: [(&str, &str); 18] = [
     ("seed = 2 }", "seed = -2 }"),
     ("kind = \"formula\", text", "kind = \"formla\", text"),
     ("kind = \"formula\", text", "kind = \"mc\", text"),
-    ("benchmark_spacing = 0.05", "benchmark_spacing = 0.0005"),
+    ("benchmark_spacing = 0.05", "benchmark_spacing = 0.000005"),
     ("isovalue = 0.0", "isovalue = 9.0"),
     ("right = \"torus_bi-relaxed\"", "right = \"torus_bi-relax\""),
     ("sides = \"balanced\"", "sides = \"balance\""),

@@ -38,11 +38,11 @@ impl SidesSource {
         match self {
             Self::InFile => "The file says which item was on which side.",
             Self::FromCodeNames => {
-                "The file does not name sides. They are those of the code names in its `stimulus` column, as the study deals \
+                "The file does not name sides. They are those of the code names in its column \u{201c}stimulus\u{201d}, as the study deals \
                  them; each answer is taken as what was pressed."
             }
             Self::FromForms => {
-                "The file does not name sides. They are those of the forms in its `form` column, as the study deals them; each \
+                "The file does not name sides. They are those of the forms in its column \u{201c}form\u{201d}, as the study deals them; each \
                  answer is taken as what was pressed."
             }
             Self::AsListed => {

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use crate::Volume;
 use crate::data::{self, Encoding, Layout};
 use crate::error::{Problem, VolumeError, shortened};
-use crate::stored::Stored;
 
 /// Far longer than any header; keeps a file of something else from being read to its end.
 const HEADER_LIMIT: usize = 1 << 20;
@@ -129,20 +128,17 @@ impl Unread {
         self.layout.samples * crate::SAMPLE_BYTES
     }
 
+    /// The data's file, where the data may begin, and its name; and what the header says.
+    pub(crate) fn opened(self) -> Result<(BufReader<File>, PathBuf, Frame, Layout), VolumeError> {
+        let Self { frame, layout, header, data } = self;
+        let (input, path) = opened(data, &header)?;
+        Ok((input, path, frame, layout))
+    }
+
     /// Whether the samples stand in the file one after the other, so that parts of them can be read ([`stored`](Self::stored)): neither
     /// compressed nor written as text.
     pub fn is_raw(&self) -> bool {
         self.layout.encoding == Encoding::Raw
-    }
-
-    /// Opens the data, of which parts are to be read. It must be as long as the header says.
-    ///
-    /// # Errors
-    /// [`VolumeError`]; [`Problem::Unsupported`] if it is not [raw](Self::is_raw).
-    pub fn stored(self) -> Result<Stored, VolumeError> {
-        let Self { frame, layout, header, data } = self;
-        let (input, path) = opened(data, &header)?;
-        Stored::of(input, &path, frame, layout).map_err(|problem| problem.in_file(&path))
     }
 
     /// Reads the samples, as [`read`](crate::read).

@@ -8,7 +8,7 @@ use isostudy_foreign::Parts;
 
 use crate::data::{Encoding, Layout, decode, skip_lines};
 use crate::error::{Problem, VolumeError};
-use crate::header::Frame;
+use crate::header::{Frame, Unread};
 
 /// Bytes that are read at a time, a multiple of every sample's size. They are on the stack: reading asks for no memory.
 const BLOCK: usize = 1 << 15;
@@ -26,14 +26,20 @@ pub struct Stored {
     start: u64,
 }
 
+impl Unread {
+    /// Opens the data, of which parts are to be read. It must be as long as the header says.
+    ///
+    /// # Errors
+    /// [`VolumeError`]; [`Problem::Unsupported`] if it is not [raw](Self::is_raw).
+    pub fn stored(self) -> Result<Stored, VolumeError> {
+        let (input, path, frame, layout) = self.opened()?;
+        Stored::of(input, &path, frame, layout).map_err(|problem| problem.in_file(&path))
+    }
+}
+
 impl Stored {
     /// Of the data's file, which is read to where the data begins.
-    pub(crate) fn of(
-        mut input: BufReader<File>,
-        path: &Path,
-        frame: Frame,
-        layout: Layout,
-    ) -> Result<Self, Problem> {
+    fn of(mut input: BufReader<File>, path: &Path, frame: Frame, layout: Layout) -> Result<Self, Problem> {
         if layout.encoding != Encoding::Raw {
             return Err(Problem::unsupported("encoding", layout.encoding.name(), "raw is, to read parts"));
         }
