@@ -48,7 +48,7 @@ pub(super) fn signs_of(
     let [points, rows] = grid.layout.used(grid.layout.kind(layer));
     let [stride, all_rows, _] = grid.size;
     for row in 0..rows {
-        let start = ((layer + 1) % slots * all_rows + row) * stride;
+        let start = (layer % slots * all_rows + row) * stride;
         signs.fill(row, layer, &values[start..start + points], isovalue);
     }
 }
