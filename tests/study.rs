@@ -350,7 +350,7 @@ fn wrong_input_is_refused_before_anything_is_made() {
     refused("solid.obj", "nothing.obj", &["field.sources[0].file", "nothing.obj", "make bunny"]);
     let key = "objects[0].benchmark_spacing";
     refused("benchmark_spacing = 0.125", "benchmark_spacing = 0.002", &[key, "0.002", "GiB"]);
-    refused("benchmark_spacing = 0.125", "benchmark_spacing = 1e-4", &[key, "sample points"]);
+    refused("benchmark_spacing = 0.125", "benchmark_spacing = 5e-6", &[key, "sample points"]);
     refused("spacing = 0.4", "spacing = 1e-9", &["stills[1].spacing"]);
     refused("schema = 1", "schema = [", &["line"]);
     refused("frames = 12", "frames = -12", &["frames", "-12", "whole number"]);
