@@ -9,7 +9,7 @@ const NAMED: usize = 3;
 
 /// Which methods have another spacing than their object, and why, in a sentence.
 pub(crate) fn budgets(inputs: &Inputs<'_>) -> Option<String> {
-    sentence(inputs, |methods| list(methods))
+    sentence(inputs, list)
 }
 
 /// The same for a caption: of many methods, how many there are.
