@@ -70,6 +70,10 @@ impl StudyField for Counted<'_> {
         self.field.sample_row_after(x, y, z, values, before);
     }
 
+    fn values_at_once(&self) -> usize {
+        self.field.values_at_once()
+    }
+
     fn slope(&self, bounds: Bounds) -> Option<f32> {
         self.field.slope(bounds)
     }

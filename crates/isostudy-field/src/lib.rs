@@ -93,6 +93,12 @@ pub trait StudyField: Sync {
         self.sample_row(x, y, z, values);
     }
 
+    /// How many values of a row to ask for at once near the surface. More take less time each where a row shares work, and some of
+    /// them turn out not to be needed.
+    fn values_at_once(&self) -> usize {
+        4
+    }
+
     /// A bound on how fast the value changes in a box: `|sample(p) - sample(q)| <= slope * |p - q|` for all `p` and
     /// `q` in it, up to rounding of 1e-5 of the values, and as if `p` and `q` were off by 1e-6 of their largest
     /// coordinates; and no value in it is `NaN`. `None` where nothing is known.
@@ -155,6 +161,10 @@ where
 
     fn sample_row_after(&self, x: &[f32], y: f32, z: f32, values: &mut [f32], before: Option<(Vec3, f32)>) {
         (**self).sample_row_after(x, y, z, values, before);
+    }
+
+    fn values_at_once(&self) -> usize {
+        (**self).values_at_once()
     }
 
     fn slope(&self, bounds: Bounds) -> Option<f32> {

@@ -30,6 +30,10 @@ impl<F: StudyField> StudyField for Negated<F> {
         values.iter_mut().for_each(|v| *v = -*v);
     }
 
+    fn values_at_once(&self) -> usize {
+        self.0.values_at_once()
+    }
+
     fn slope(&self, bounds: Bounds) -> Option<f32> {
         self.0.slope(bounds)
     }

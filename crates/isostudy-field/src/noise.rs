@@ -222,22 +222,32 @@ impl Cell {
         blend(front, back, y)
     }
 
+    /// On the lower face, the upper corners count for nothing.
     fn value_and_gradient(&self) -> (f64, DVec3) {
         let weights = self.t.map(fade);
+        let slopes = self.t.map(fade_slope);
+        let corners = if self.t[2] == 0.0 { 4 } else { 8 };
+        let mut slants = [0.0; 8];
         let mut gradient = DVec3::ZERO;
-        for corner in 0..8 {
+        for (corner, slant) in slants[..corners].iter_mut().enumerate() {
+            *slant = self.slant(corner);
             let weight = |axis: usize| {
                 if corner >> axis & 1 == 1 { weights[axis] } else { 1.0 - weights[axis] }
             };
-            let (slant, all) = (self.slant(corner), weight(0) * weight(1) * weight(2));
+            let all = weight(0) * weight(1) * weight(2);
             for axis in 0..3 {
                 let others = weight((axis + 1) % 3) * weight((axis + 2) % 3);
                 let change = if corner >> axis & 1 == 1 { others } else { -others };
-                gradient[axis] +=
-                    self.gradients[corner][axis] * all + slant * change * fade_slope(self.t[axis]);
+                gradient[axis] += self.gradients[corner][axis] * all + *slant * change * slopes[axis];
             }
         }
-        (self.value(), gradient)
+        let layer = |first: usize| {
+            let front = blend(slants[first], slants[first + 1], weights[0]);
+            let back = blend(slants[first + 2], slants[first + 3], weights[0]);
+            blend(front, back, weights[1])
+        };
+        let value = if corners == 4 { layer(0) + 0.0 } else { layer(0) + (layer(4) - layer(0)) * weights[2] };
+        (value, gradient)
     }
 }
 

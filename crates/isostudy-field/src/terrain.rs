@@ -256,8 +256,37 @@ impl Terrain {
         self.cave([0.0; 2])
     }
 
-    /// A range that holds every value in a box, in widths.
+    /// A range that holds every value in a box, in widths. Where less than all of the noise tells the value's sign, no more is asked,
+    /// and the range is wider than need be.
     fn range_in_widths(&self, low: DVec3, high: DVec3) -> (f64, f64) {
+        let walls = self.range_of_walls(low, high);
+        let heights = self.relief.bounds();
+        let mut ground = (heights.0 - high.z, heights.1 - low.z);
+        if ground.0 <= 0.0 && ground.1.min(walls.1) > 0.0 {
+            ground = self.range_of_ground(low, high);
+        }
+        let mut range = (ground.0.min(walls.0), ground.1.min(walls.1));
+        if self.settings.caves > 0.0 {
+            // A cave makes no air solid.
+            let caves =
+                if range.1 > 0.0 { self.range_of_caves(low, high) } else { (self.least_of_caves(), 0.0) };
+            range = (range.0.min(caves.0), range.1.min(caves.1));
+        }
+        let rounding = 1e-12 * (1.0 + low.abs().max(high.abs()).max_element());
+        (range.0 - rounding, range.1 + rounding)
+    }
+
+    /// A wall's distance is nowhere less than at one end of the box, and nowhere greater than at its own better end.
+    fn range_of_walls(&self, low: DVec3, high: DVec3) -> (f64, f64) {
+        if !self.settings.closed {
+            return (f64::INFINITY, f64::INFINITY);
+        }
+        let nearest = low.min(self.size - high).min_element();
+        let farthest = high.min(self.size - low).min_element();
+        (nearest - self.settings.margin, farthest - self.settings.margin)
+    }
+
+    fn range_of_ground(&self, low: DVec3, high: DVec3) -> (f64, f64) {
         let mut shifted = [(low.x, high.x), (low.y, high.y)];
         if self.has_overhangs() {
             for (side, shift) in shifted.iter_mut().zip(&self.shifts) {
@@ -265,24 +294,17 @@ impl Terrain {
                 *side = (side.0 + least * self.settings.overhang, side.1 + greatest * self.settings.overhang);
             }
         }
-        let height = self.relief.range(shifted);
-        let mut range = (height.0 - high.z, height.1 - low.z);
-        if self.settings.closed {
-            // A wall's distance is nowhere less than at one end of the box, and nowhere greater than at its own better end.
-            let nearest = low.min(self.size - high).min_element() - self.settings.margin;
-            let farthest = high.min(self.size - low).min_element() - self.settings.margin;
-            range = (range.0.min(nearest), range.1.min(farthest));
-        }
-        if self.settings.caves > 0.0 && range.1 > self.least_of_caves() {
-            let [a, b] = self.caves.map(|cave| {
-                let (low, high) = cave.range(self.cave_place(low), self.cave_place(high));
-                // Of the magnitude.
-                (low.max(-high).max(0.0), high.max(-low))
-            });
-            range = (range.0.min(self.cave([a.0, b.0])), range.1.min(self.cave([a.1, b.1])));
-        }
-        let rounding = 1e-12 * (1.0 + low.abs().max(high.abs()).max_element());
-        (range.0 - rounding, range.1 + rounding)
+        let (least, greatest) = self.relief.range(shifted);
+        (least - high.z, greatest - low.z)
+    }
+
+    fn range_of_caves(&self, low: DVec3, high: DVec3) -> (f64, f64) {
+        let [a, b] = self.caves.map(|cave| {
+            let (low, high) = cave.range(self.cave_place(low), self.cave_place(high));
+            // Of the magnitude.
+            (low.max(-high).max(0.0), high.max(-low))
+        });
+        (self.cave([a.0, b.0]), self.cave([a.1, b.1]))
     }
 
     /// The steepest of the parts, by the chain rule: a wall has 1, the ground 1 along z and the relief's on the shifted
@@ -362,6 +384,10 @@ impl StudyField for Terrain {
                 *value = self.rounded(Vec3::new(x, y, z), found);
             }
         }
+    }
+
+    fn values_at_once(&self) -> usize {
+        16
     }
 
     /// No value is needed.

@@ -67,6 +67,10 @@ impl<F: StudyField> StudyField for Walled<F> {
         }
     }
 
+    fn values_at_once(&self) -> usize {
+        self.field.values_at_once()
+    }
+
     /// The field's; nothing is known where it jumps.
     fn slope(&self, bounds: Bounds) -> Option<f32> {
         if self.is_clear(bounds) { self.field.slope(bounds) } else { None }

@@ -10,8 +10,8 @@ use crate::memory::refill;
 use crate::sampling::bits::{set_near, set_range};
 use crate::sampling::tiles::{Known, Span, Tile};
 
-/// Samples taken together near the surface.
-const BATCH: usize = 4;
+/// At most so many samples are taken together near the surface.
+const BATCH: usize = 16;
 
 /// Which columns of a row have points.
 pub(crate) trait Columns: Copy {
@@ -101,6 +101,7 @@ impl<C: Columns> Line<'_, C> {
         let mut reach = f32::NAN;
         let mut waiting = Waiting { count: 0, columns: [0; BATCH] };
         let mut batch = 1;
+        let most = self.field.values_at_once().clamp(1, BATCH);
         for (k, tile) in tiles.iter().enumerate() {
             let reach_of_tile = tile.squared_reach(isovalue);
             let (dy, dz) = (self.y - tile.at.y, self.z - tile.at.z);
@@ -120,7 +121,7 @@ impl<C: Columns> Line<'_, C> {
                         before = self.take(&mut waiting, before.hint().or(tile.hint()), slope);
                         reach = before.squared_reach(isovalue);
                         // Near the surface it takes them all: some at a time is quicker.
-                        batch = BATCH;
+                        batch = most;
                     }
                 }
             }

@@ -95,6 +95,13 @@ impl Relief {
         )
     }
 
+    /// No height is below the first or above the second.
+    pub(super) fn bounds(&self) -> (f64, f64) {
+        let share: f64 = self.shared().map(|(_, share)| share).sum();
+        let farthest = self.relief * share * (1.0 + 1e-9);
+        (self.ground + self.terraced(-farthest) - 1e-12, self.ground + self.terraced(farthest) + 1e-12)
+    }
+
     /// A bound on the change of the height a unit of length.
     pub(super) fn slope(&self) -> f64 {
         let noise: f64 = self.shared().map(|(noise, share)| centring(noise) * noise.slope() * share).sum();
