@@ -30,6 +30,7 @@ ONLY = {
     "indicatif": {"isostudy"},
     "isostudy-expression": {"isostudy"},
     "isostudy-volume": {"isostudy"},
+    "isostudy-grid": {"isostudy"},
     "isostudy-program": {"isostudy"},
 }
 # All crates of the workspace that these may use themselves.
@@ -38,6 +39,7 @@ KNOWS = {
     "isostudy-cells": set(),
     "isostudy-foreign": set(),
     "isostudy-volume": {"isostudy-foreign"},
+    "isostudy-grid": {"isostudy-foreign", "isostudy-mesh", "isostudy-field"},
     "isostudy-design": {"isostudy-foreign"},
     "isostudy-table": set(),
     "isostudy-statistics": set(),

@@ -1,0 +1,7 @@
+//! Grids, from outside.
+
+mod errors;
+mod field;
+mod files;
+mod mutated;
+mod surfaces;
