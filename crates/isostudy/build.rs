@@ -7,7 +7,7 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const CRATES: [&str; 21] = [
+const CRATES: [&str; 22] = [
     "mesh",
     "cells",
     "design",
@@ -16,6 +16,7 @@ const CRATES: [&str; 21] = [
     "foreign",
     "expression",
     "volume",
+    "grid",
     "extract",
     "trilinear",
     "program",

@@ -21,13 +21,14 @@ const MEMORY_LIMIT: u64 = 300 << 20;
 const WRITTEN: [(&str, &str); 5] =
     [("", "out"), ("", "picture"), ("", "figure"), ("new", "folder"), ("serve", "answers")];
 /// What else has to be said for an argument to be taken.
-const BESIDE: [(&str, &str, &[&str]); 14] = [
+const BESIDE: [(&str, &str, &[&str]); 15] = [
     ("analyse", "responses", &["my/study.toml"]),
     ("analyse", "mapping", &["answers.csv"]),
     ("distance", "a", &["ball.obj"]),
     ("distance", "study", &["--object", "torus"]),
     ("turntable", "study", &["--object", "torus", "--colour", "error", "-o", "x.gif"]),
     ("extract", "volume", &["--isovalue", "0", "-o", "x.ply"]),
+    ("extract", "grid", &["--isovalue", "0", "-o", "x.ply"]),
     ("extract", "labels", &["-o", "x.ply"]),
     ("extract", "mesh", &["-o", "x.ply"]),
     ("extract", "study", &["-o", "x"]),
@@ -71,6 +72,7 @@ const KINDS: [&str; 6] = ["device", "endless", "folder", "pipe", "huge", "missin
 fn ending(id: &str) -> &'static str {
     match id {
         "volume" | "labels" => "nrrd",
+        "grid" => "vtu",
         "mesh" | "a" | "b" => "ply",
         "tables" | "spacings" | "run" => "json",
         "responses" | "downloads" | "table" | "spread_of" => "csv",

@@ -1,6 +1,7 @@
 //! `isostudy extract`: the meshes of a study, or the surface of a formula, a volume or a mesh in a file.
 
 mod chosen_method;
+mod grid;
 mod isovalues;
 mod labels;
 mod own_cells;
@@ -32,11 +33,12 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh", "labels"]).required(true)))]
+#[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh", "grid", "labels"]).required(true)))]
 #[command(after_help = "\
 Examples:
   isostudy extract --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2 --spacing 0.05 -o ball.ply
   isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb --quality
+  isostudy extract --grid flow.vtu --array pressure --isovalue 0.5 -o pressure.ply
   isostudy extract --labels organs.seg.nrrd --only 2,5 -o organs.glb
   isostudy extract --volume head.nrrd --isovalues 100:1500:15 -o 'head-{isovalue}.ply' --method mc
   isostudy extract --field 'max(abs(x), max(abs(y), abs(z))) - 1' --bounds=-2,-2,-2,2,2,2 -o box.glb --method dc-in-cell --crease-deg 40
@@ -48,6 +50,13 @@ pub(crate) struct Arguments {
     study: Option<PathBuf>,
     #[command(flatten)]
     source: SourceArguments,
+    /// Grid of tetrahedra or other cells: .vtu, .vts, .vtk, .node or .ele; its own cells are extracted on. Needs --isovalue
+    #[arg(long, value_name = "FILE", requires = "isovalue", conflicts_with_all = ["study", "bounds", "spacing", "cells", "close", "allow_open",
+        "arrangement", "clustering", "method", "recipe"])]
+    grid: Option<PathBuf>,
+    /// Array of a grid, with a value on each of its points; of TetGen's files, the number of an attribute [default: the only one]
+    #[arg(long, value_name = "NAME", requires = "grid")]
+    array: Option<String>,
     /// Volume of labels, whole numbers of which 0 is the background: the boundaries between every two of them, by surface nets
     #[arg(long, value_name = "FILE", conflicts_with_all = ["study", "bounds", "spacing", "cells", "isovalue", "inside", "allow_open", "arrangement", "clustering"])]
     labels: Option<PathBuf>,
@@ -89,16 +98,16 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
     threads: u32,
     /// Of a study, redo what is up to date as well
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "labels"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "grid", "labels"])]
     force: bool,
     /// Of a study, run the programs that it names as methods; they may do whatever you may do
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "labels"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "grid", "labels"])]
     allow_programs: bool,
     /// Of a study, run programs by bubblewrap: without a network, in a folder of their own, the system read-only
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "labels"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "grid", "labels"])]
     sandbox: bool,
     /// Of a study, only these configurations, such as ss_bi; of labels, only these, such as 2,5 [default: all]
-    #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh"])]
+    #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh", "grid"])]
     only: Vec<String>,
 }
 
@@ -159,15 +168,14 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if let Some(path) = &arguments.labels {
         return labels::extract(arguments, path);
     }
+    if let Some(path) = &arguments.grid {
+        return grid::extract(arguments, path);
+    }
     let out = arguments.out.as_deref().context("-o is needed")?;
     if let Some(isovalues) = &arguments.isovalues {
         return isovalues.extract(arguments, out);
     }
-    let format = mesh_file::format_to_write(out).with_context(|| out.display().to_string())?;
-    check_outputs(arguments, out)?;
-    if arguments.crease_deg.is_some() && format != MeshFormat::Glb && arguments.picture.is_none() {
-        bail!("--crease-deg is for .glb and --picture: in {} vertices are not split", out.display());
-    }
+    let format = format(arguments, out)?;
     let method = arguments.method();
     let execution = Execution { threads: arguments.threads as usize };
     let volume = arguments.source.volume_alone().filter(|_| method.is_of_cubes());
@@ -187,22 +195,7 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if let Some(source) = source.as_ref().filter(|_| extraction.mesh.triangles.is_empty()) {
         bail!(source.no_surface_of(&method));
     }
-    write_whole_by(out, |file| {
-        let mut buffered = BufWriter::new(file);
-        match arguments.crease_deg.filter(|_| format == MeshFormat::Glb) {
-            Some(crease) => {
-                format.write(
-                    &corner_normals(&extraction.mesh, crease).split(&extraction.mesh),
-                    &mut buffered,
-                )?;
-            }
-            None => format.write(&extraction.mesh, &mut buffered)?,
-        }
-        buffered.flush()
-    })?;
-    if let Some(path) = &arguments.picture {
-        write_whole(path, &picture(&extraction.mesh, arguments.crease_deg)?)?;
-    }
+    write(arguments, out, format, &extraction.mesh)?;
     // With --json the report has it all.
     if !arguments.json
         && let Cells::Own { is_turned: true, .. } = &cells
@@ -235,6 +228,32 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
         return Ok(Outcome::CheckFailed);
     }
     Ok(Outcome::Done)
+}
+
+/// The format of the mesh, if all that is to be written can be.
+fn format(arguments: &Arguments, out: &Path) -> Result<MeshFormat> {
+    let format = mesh_file::format_to_write(out).with_context(|| out.display().to_string())?;
+    check_outputs(arguments, out)?;
+    if arguments.crease_deg.is_some() && format != MeshFormat::Glb && arguments.picture.is_none() {
+        bail!("--crease-deg is for .glb and --picture: in {} vertices are not split", out.display());
+    }
+    Ok(format)
+}
+
+/// Writes the mesh, and draws it if that is asked for.
+fn write(arguments: &Arguments, out: &Path, format: MeshFormat, mesh: &TriangleMesh) -> Result<()> {
+    write_whole_by(out, |file| {
+        let mut buffered = BufWriter::new(file);
+        match arguments.crease_deg.filter(|_| format == MeshFormat::Glb) {
+            Some(crease) => format.write(&corner_normals(mesh, crease).split(mesh), &mut buffered)?,
+            None => format.write(mesh, &mut buffered)?,
+        }
+        buffered.flush()
+    })?;
+    if let Some(path) = &arguments.picture {
+        write_whole(path, &picture(mesh, arguments.crease_deg)?)?;
+    }
+    Ok(())
 }
 
 /// Says on standard error how large a mesh is, and how long it took to make from what was read.
@@ -285,7 +304,7 @@ fn open_edges(mesh: &TriangleMesh) -> Option<String> {
 /// Nothing that was given is written over; and no output over another, since no mesh ends as pictures do.
 fn check_outputs(arguments: &Arguments, out: &Path) -> Result<()> {
     let outputs = [Some(out), arguments.picture.as_deref()];
-    let given = arguments.labels.as_deref().or(arguments.source.file());
+    let given = arguments.labels.as_deref().or(arguments.grid.as_deref()).or(arguments.source.file());
     for output in outputs.into_iter().flatten() {
         if given.is_some_and(|file| input::is_same(file, output)) {
             bail!("{}: is the input; it would be written over", output.display());

@@ -114,16 +114,7 @@ impl QualityReport {
     pub(super) fn to_text(&self) -> Result<String> {
         let [x, y, z] = self.cells;
         let (q, t) = (&self.quality, &self.topology);
-        let faults = [
-            ("boundary edges", t.boundary_edges),
-            ("edges with more than two triangles", t.non_manifold_edges),
-            ("edges between opposite sides", t.misoriented_edges),
-            ("vertices with more than one fan", t.non_manifold_vertices),
-            ("triangles twice", t.duplicate_faces),
-        ];
-        let faults: Vec<String> =
-            faults.iter().filter(|f| f.1 > 0).map(|(name, count)| format!("{count} {name}")).collect();
-        let state = if faults.is_empty() { "closed manifold".to_owned() } else { faults.join(", ") };
+        let state = state_of(t);
         let [arrangement, spacing] = match (self.arrangement, self.own_cells) {
             (_, true) => ["the volume's own cells, ".to_owned(), String::new()],
             (Some(of), _) => [format!("{of}, "), format!(" cubes of {}", self.spacing)],
@@ -177,6 +168,20 @@ impl QualityReport {
     }
 }
 
+/// What a mesh is, or its faults.
+pub(super) fn state_of(t: &Topology) -> String {
+    let faults = [
+        ("boundary edges", t.boundary_edges),
+        ("edges with more than two triangles", t.non_manifold_edges),
+        ("edges between opposite sides", t.misoriented_edges),
+        ("vertices with more than one fan", t.non_manifold_vertices),
+        ("triangles twice", t.duplicate_faces),
+    ];
+    let faults: Vec<String> =
+        faults.iter().filter(|f| f.1 > 0).map(|(name, count)| format!("{count} {name}")).collect();
+    if faults.is_empty() { "closed manifold".to_owned() } else { faults.join(", ") }
+}
+
 /// How often the field was called.
 fn taken(counts: &Counts) -> String {
     match (counts.evaluations, counts.evaluations_per_vertex()) {
@@ -195,7 +200,7 @@ fn lost(points: u64) -> String {
 }
 
 /// How many triangles pass through each other, in words.
-fn intersecting(pairs: Option<u64>) -> String {
+pub(super) fn intersecting(pairs: Option<u64>) -> String {
     match pairs {
         Some(0) => "no triangle passes through another".to_owned(),
         Some(isostudy_mesh::MOST_INTERSECTIONS) => {
