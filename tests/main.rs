@@ -13,6 +13,7 @@ mod fixture;
 mod football;
 mod foreign;
 mod gate;
+mod grids;
 mod http;
 mod isovalues;
 mod labels;

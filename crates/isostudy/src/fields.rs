@@ -1,5 +1,6 @@
 //! The scalar fields of a study's objects, from what the study file says of them.
 
+use crate::grid_file;
 use crate::input;
 use crate::memory::{Limit, OfVolume};
 use crate::mesh_file;
@@ -13,16 +14,19 @@ use isostudy_design::Study;
 use isostudy_design::config::{FieldSection, MeshSourceSection, ObjectSection};
 use isostudy_design::wording::{did_you_mean, plainly};
 use isostudy_field::{Asteroid, MeshDistance, Sphere, StudyField, Terrain, TerrainCharacter};
+use isostudy_grid::{Grid, GridField};
 use isostudy_mesh::{Bounds, TriangleMesh};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// An object's field.
 pub(crate) struct ObjectField {
     /// Inside is above [`isovalue`](Self::isovalue), whatever the study says.
     pub(crate) field: Box<dyn StudyField + Send>,
     pub(crate) isovalue: f32,
+    /// The cells of a grid, which are a lattice of their own; `None` of other fields.
+    pub(crate) cells: Option<Arc<Grid>>,
 }
 
 /// The scalar fields of a study's objects, each made when it is first asked for.
@@ -73,7 +77,7 @@ pub(crate) fn bounds(object: &ObjectSection) -> Bounds {
 
 fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<ObjectField> {
     let isovalue = object.isovalue as f32;
-    let as_it_is = |field: Box<dyn StudyField + Send>| Ok(ObjectField { field, isovalue });
+    let as_it_is = |field: Box<dyn StudyField + Send>| Ok(ObjectField { field, isovalue, cells: None });
     match &object.field {
         FieldSection::Sphere { radius } => as_it_is(Box::new(Sphere { radius: *radius as f32 })),
         FieldSection::Asteroid {} => as_it_is(Box::<Asteroid>::default()),
@@ -96,12 +100,36 @@ fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<ObjectFi
         FieldSection::Volume { file, inside, close } => {
             Ok(of(options(study, object, *inside, *close).of_volume(&study.resolve(file))?))
         }
+        FieldSection::Grid { file, array, inside } => {
+            of_grid(study, object, (file, array.as_deref(), *inside))
+        }
         FieldSection::Terrain(keys) => as_it_is(Box::new(TerrainKeys::of(keys)?.terrain(bounds(object))?)),
     }
 }
 
 fn of(source: source::Source) -> ObjectField {
-    ObjectField { field: source.field, isovalue: source.isovalue }
+    ObjectField { field: source.field, isovalue: source.isovalue, cells: None }
+}
+
+/// A grid, as cells and as what interpolates on them.
+fn of_grid(
+    study: &Study,
+    object: &ObjectSection,
+    (file, array, inside): (&str, Option<&str>, Option<isostudy_design::config::Inside>),
+) -> Result<ObjectField> {
+    let path = study.resolve(file);
+    let grid = grid_file::read(&path, array, limit(study))?;
+    let (grid, isovalue) = match inside {
+        Some(isostudy_design::config::Inside::Below) => (grid.negated(), -object.isovalue as f32),
+        _ => (grid, object.isovalue as f32),
+    };
+    let cells = Arc::new(grid);
+    let field = GridField::try_new(Arc::clone(&cells)).with_context(|| path.display().to_string())?;
+    Ok(ObjectField { field: Box::new(field), isovalue, cells: Some(cells) })
+}
+
+fn limit(study: &Study) -> Limit {
+    Limit::of_study(study, isostudy_bench::read_machine().memory_bytes)
 }
 
 /// The object's box is its own, and so is its isovalue; its spacing belongs to each method.
@@ -123,7 +151,7 @@ fn options(
         }),
         close,
         allow_open: true,
-        limit: Limit::of_study(study, isostudy_bench::read_machine().memory_bytes),
+        limit: limit(study),
         // Each of the study's methods is held against the limit by itself.
         method: None,
         in_file: false,
@@ -262,11 +290,10 @@ pub(crate) fn files(study: &Study, number: usize) -> Result<Vec<(String, String)
         }
         FieldSection::Volume { file, .. } => {
             let path = study.resolve(file);
-            let limit = Limit::of_study(study, isostudy_bench::read_machine().memory_bytes);
             let read = || {
                 let unread = isostudy_volume::open(&path)?;
                 let needed = OfVolume::samples(&unread);
-                limit.read(unread, needed)
+                limit(study).read(unread, needed)
             };
             let volume = read().with_context(|| format!("objects[{number}].field.file"))?;
             // The samples as well: a header may name another file that holds them.
@@ -276,8 +303,17 @@ pub(crate) fn files(study: &Study, number: usize) -> Result<Vec<(String, String)
             let digest = sha256_of(std::iter::once(lies).chain(samples));
             Ok(vec![named(file, &path)?, (format!("samples of {file}"), digest)])
         }
+        FieldSection::Grid { file, .. } => {
+            let files = isostudy_grid::files(&study.resolve(file));
+            files.iter().map(|path| named(&beside(file, path), path)).collect()
+        }
         _ => Ok(Vec::new()),
     }
+}
+
+/// A file as written in a study, or another beside it.
+fn beside(written: &str, path: &Path) -> String {
+    Path::new(written).with_file_name(path.file_name().unwrap_or_default()).display().to_string()
 }
 
 fn field_inputs(study: &Study, number: usize) -> Result<String> {
@@ -304,7 +340,7 @@ pub(crate) fn check(study: &Study) -> Result<()> {
                 let (source, path) = present_source(study, number, object)?;
                 read_checked(&source, &path).with_context(|| format!("{}: {}", place(), path.display()))?;
             }
-            FieldSection::Volume { file, .. } => {
+            FieldSection::Volume { file, .. } | FieldSection::Grid { file, .. } => {
                 let path = study.resolve(file);
                 if !path.is_file() {
                     bail!("{}.file names {}: no such file", place(), path.display());

@@ -46,7 +46,7 @@ impl Prepared<'_> {
     pub(crate) fn missed(&self) -> Option<String> {
         match &self.recipe {
             Recipe::Extractor(method) => seeds::missed(method),
-            Recipe::Program(_) | Recipe::Meshes(_) => None,
+            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::GridCells => None,
         }
     }
 
@@ -74,6 +74,11 @@ impl Prepared<'_> {
                 let mesh = mesh_file::read(path)?;
                 mesh_file::check_lies_in(&mesh, &self.grid).with_context(|| path.display().to_string())?;
                 let mesh = with_normals(mesh);
+                Made { counts: records::counts_of_mesh(&mesh, None), mesh, program: None }
+            }
+            Recipe::GridCells => {
+                let mesh = self.on_own_cells()?.mesh;
+                mesh_file::check_lies_in(&mesh, &self.grid)?;
                 Made { counts: records::counts_of_mesh(&mesh, None), mesh, program: None }
             }
         })

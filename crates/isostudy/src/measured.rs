@@ -69,6 +69,16 @@ impl Measured for Clock<'_> {
                 let counters = Counters { outside_s: Some(answer.wall.as_secs_f64()), ..Counters::default() };
                 Ok(Timed { stages, counters })
             }
+            Recipe::GridCells => {
+                let began = Instant::now();
+                let surface =
+                    prepared.on_own_cells().map_err(|error| format!("{}: {error:#}", prepared.id))?;
+                let geometry_s = began.elapsed().as_secs_f64();
+                black_box(surface);
+                // Nothing is sampled: the values are the grid's.
+                let stages = StageSeconds { geometry_s, ..StageSeconds::default() };
+                Ok(Timed { stages, counters: Counters::default() })
+            }
             _ => extractor(&prepared)?.time(threads),
         }
     }
@@ -87,15 +97,16 @@ impl Measured for Clock<'_> {
                     peak_bytes: after.peak_bytes,
                 }))
             }
+            Recipe::GridCells => Ok(None),
             _ => extractor(&prepared)?.memory(threads),
         }
     }
 
-    /// Of a program it is not known.
+    /// Of a program and of the cells of a grid it is not known.
     fn allocations(&mut self, number: usize) -> Result<Option<AllocationCounts>, String> {
         let prepared = (self.prepare)(number)?;
         match &prepared.recipe {
-            Recipe::Program(_) => Ok(None),
+            Recipe::Program(_) | Recipe::GridCells => Ok(None),
             _ => extractor(&prepared)?.allocations(),
         }
     }

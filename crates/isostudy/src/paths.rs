@@ -239,6 +239,7 @@ fn studies(name: &str, folder: &Path) -> Vec<(&'static str, String)> {
     let target = study.lines().find(|line| line.starts_with("target = ")).map(str::to_owned);
     let mut all = vec![
         ("a volume", with(&field, format!("field = {{ kind = \"volume\", file = \"../{name}.nrrd\" }}"))),
+        ("a grid", with(&field, format!("field = {{ kind = \"grid\", file = \"../{name}.vtu\" }}"))),
         ("a mesh", with(&field, format!("field = {{ kind = \"mesh\", file = \"../{name}.ply\" }}"))),
         (
             "meshes",
@@ -265,7 +266,7 @@ fn no_path_of_a_study_takes_what_is_no_file() {
     let mut wrong = Vec::new();
     for kind in KINDS {
         let name = format!("named-{kind}");
-        for ending in ["nrrd", "ply", "csv", "toml", "sh"] {
+        for ending in ["nrrd", "vtu", "ply", "csv", "toml", "sh"] {
             put(kind, &folder.path().join(format!("{name}.{ending}")));
         }
         for (key, study) in studies(&name, folder.path()) {

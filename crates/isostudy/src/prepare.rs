@@ -11,6 +11,7 @@ use isostudy_design::record::Purpose;
 use isostudy_design::{Configuration, ConfigurationId, MethodId, Study};
 use isostudy_extract::{Arrangement, BoxGrid, Execution, Method, MethodError};
 use isostudy_field::StudyField;
+use isostudy_grid::{Grid, Surface};
 use isostudy_mesh::Bounds;
 use serde::{Deserialize, Serialize};
 
@@ -57,6 +58,8 @@ pub(crate) struct Prepared<'a> {
     pub(crate) isovalue: f32,
     /// Where the field is sampled.
     pub(crate) grid: BoxGrid,
+    /// The cells of a grid, where that is the object.
+    pub(crate) own_cells: Option<&'a Grid>,
     /// How the mesh comes to be.
     pub(crate) recipe: Recipe,
 }
@@ -83,6 +86,7 @@ pub(crate) fn prepare<'a>(
         field: &*made.field,
         isovalue: made.isovalue,
         grid: grid(object, spacing.unwrap_or_else(|| wanted.spacing(object))),
+        own_cells: made.cells.as_deref(),
         recipe: recipe(study, configuration.id.method, wanted.purpose())?,
     })
 }
@@ -94,6 +98,15 @@ impl<'a> Prepared<'a> {
         Some(isostudy_bench::Prepared { field: self.field, method, grid: self.grid, isovalue: self.isovalue })
     }
 
+    /// The surface on the object's own cells.
+    ///
+    /// # Errors
+    /// If it is no grid.
+    pub(crate) fn on_own_cells(&self) -> Result<Surface> {
+        let cells = self.own_cells.context("checked when the study was read")?;
+        Ok(cells.extract(f64::from(self.isovalue)))
+    }
+
     /// Cells of the grid along x, y and z: those of the method, or as many as fill the box.
     ///
     /// # Errors
@@ -101,7 +114,9 @@ impl<'a> Prepared<'a> {
     pub(crate) fn cells(&self) -> Result<[u32; 3]> {
         Ok(match &self.recipe {
             Recipe::Extractor(method) => method.cells(&self.grid)?,
-            Recipe::Program(_) | Recipe::Meshes(_) => self.grid.lattice(Arrangement::SimpleCubic)?.cells(),
+            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::GridCells => {
+                self.grid.lattice(Arrangement::SimpleCubic)?.cells()
+            }
         })
     }
 }

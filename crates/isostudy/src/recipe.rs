@@ -2,7 +2,7 @@
 
 use crate::study_key::place;
 use anyhow::{Context, Result, bail};
-use isostudy_design::config::Quantity;
+use isostudy_design::config::{FieldSection, ObjectSection, Quantity};
 use isostudy_design::record::Purpose;
 use isostudy_design::wording::{did_you_mean, plainly};
 use isostudy_design::{MethodId, Study};
@@ -19,16 +19,18 @@ use std::time::Duration;
 pub(crate) enum StudyKind {
     Program,
     Meshes,
+    GridCells,
 }
 
 impl StudyKind {
-    const ALL: [Self; 2] = [Self::Program, Self::Meshes];
+    const ALL: [Self; 3] = [Self::Program, Self::Meshes, Self::GridCells];
 
     /// What `kind = ...` calls it.
     fn name(self) -> &'static str {
         match self {
             Self::Program => "program",
             Self::Meshes => "meshes",
+            Self::GridCells => "grid-cells",
         }
     }
 
@@ -47,6 +49,8 @@ pub(crate) enum Recipe {
     Program(Program),
     /// Meshes that are there: an object's id, and its file.
     Meshes(BTreeMap<String, PathBuf>),
+    /// Marching tetrahedra on the cells of an object that is a grid.
+    GridCells,
 }
 
 /// Whether this process runs programs in a sandbox. It is asked for once, and every reading of a recipe must say the same.
@@ -75,6 +79,11 @@ struct ProgramKeys {
     #[serde(default = "four")]
     memory_gib: f64,
 }
+
+/// The keys of the cells of a grid: none.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CellKeys {}
 
 /// The keys of meshes that are there.
 #[derive(Debug, Deserialize)]
@@ -138,6 +147,17 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
                 bail!("files.{missing}: must name a mesh of this object");
             }
             Ok(Recipe::Meshes(keys.files.into_iter().map(|(id, file)| (id, study.resolve(&file))).collect()))
+        }
+        Some(StudyKind::GridCells) => {
+            let CellKeys {} = keys_of(keys)?;
+            let is_grid = |object: &&ObjectSection| matches!(object.field, FieldSection::Grid { .. });
+            if let Some(other) = study.file.objects.iter().find(|object| !is_grid(object)) {
+                bail!(
+                    "kind = \"grid-cells\": object {} has no cells of its own; each object must be a field of kind = \"grid\"",
+                    other.id
+                );
+            }
+            Ok(Recipe::GridCells)
         }
         None => {
             let (kind, mut keys) = (recipe.kind.as_str(), keys);
@@ -204,7 +224,7 @@ pub(crate) fn no_kind(kind: &str, in_study: bool) -> String {
 pub(crate) fn check(study: &Study) -> Result<()> {
     for method in &study.methods {
         match recipe(study, method.id, Purpose::Benchmark)? {
-            Recipe::Extractor(_) => {}
+            Recipe::Extractor(_) | Recipe::GridCells => {}
             Recipe::Program(program) => program.check().with_context(|| key(study, method.id))?,
             Recipe::Meshes(files) => {
                 for (object, path) in &files {
@@ -233,11 +253,16 @@ pub(crate) fn check(study: &Study) -> Result<()> {
 /// Checks that a method with a budget has a spacing to choose, and that the method to be matched has what is to be matched.
 fn check_budget(study: &Study, method: &isostudy_design::Method) -> Result<()> {
     let Some(budget) = method.budget else { return Ok(()) };
+    let is_of_cells =
+        |id| Ok::<bool, anyhow::Error>(matches!(recipe(study, id, Purpose::Benchmark)?, Recipe::GridCells));
     let is_there =
         |id| Ok::<bool, anyhow::Error>(matches!(recipe(study, id, Purpose::Benchmark)?, Recipe::Meshes(_)));
     let i = study.place(method.id);
     let [name, what] = budget.quantity.names();
     let key = format!("{} = {}", place(study, &format!("methods[{i}].match.{name}")), budget.of);
+    if is_of_cells(method.id)? {
+        bail!("{key}: the cells of a grid have no spacing to choose");
+    }
     if is_there(method.id)? {
         bail!("{key}: meshes that are there have no spacing to choose");
     }
@@ -276,7 +301,7 @@ pub(crate) fn inputs(study: &Study, id: MethodId) -> Result<Vec<String>> {
 /// If one cannot be read.
 pub(crate) fn files(study: &Study, id: MethodId) -> Result<Vec<(String, String)>> {
     let files = match recipe(study, id, Purpose::Benchmark)? {
-        Recipe::Extractor(_) => Vec::new(),
+        Recipe::Extractor(_) | Recipe::GridCells => Vec::new(),
         Recipe::Program(program) => program.files().with_context(|| key(study, id))?,
         Recipe::Meshes(files) => files.into_values().collect(),
     };

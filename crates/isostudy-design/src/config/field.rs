@@ -47,6 +47,17 @@ pub enum FieldSection {
         #[serde(default, skip_serializing_if = "is_false")]
         close: bool,
     },
+    /// Values on the points of tetrahedra or other cells.
+    Grid {
+        /// VTK's `.vtu`, `.vts` or `.vtk`; TetGen's `.node` or `.ele`.
+        file: String,
+        /// The array of values, by its name; the only one unless given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        array: Option<String>,
+        /// Which side of the isovalue is solid; above unless given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        inside: Option<Inside>,
+    },
     /// Ground with hills, cliffs or caves: `character`, `seed` and what differs from the character. Whoever makes the field
     /// reads the keys.
     Terrain(toml::Table),

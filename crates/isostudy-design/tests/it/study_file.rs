@@ -112,7 +112,7 @@ fn names_are_those_that_are_taken() {
             tried += 1;
         }
     }
-    assert_eq!(tried, 14);
+    assert_eq!(tried, 15);
 }
 
 #[test]
@@ -405,7 +405,7 @@ fn full_study() -> StudyFile {
 }
 
 /// A field of each kind but terrains, which are opaque.
-fn fields() -> [FieldSection; 6] {
+fn fields() -> [FieldSection; 7] {
     let inside = Some(Inside::Above);
     let text = String::new;
     let source = MeshSourceSection {
@@ -421,13 +421,15 @@ fn fields() -> [FieldSection; 6] {
         FieldSection::Mesh { file: Some(text()), sources: vec![source], allow_open: true },
         FieldSection::Formula { text: text(), inside, close: true },
         FieldSection::Volume { file: text(), inside, close: true },
+        FieldSection::Grid { file: text(), array: Some(text()), inside },
         FieldSection::Terrain(Table::new()),
     ];
     for field in &fields {
         // A kind that is added here belongs above as well.
         match field {
             FieldSection::Sphere { .. } | FieldSection::Asteroid {} | FieldSection::Mesh { .. } => {}
-            FieldSection::Formula { .. } | FieldSection::Volume { .. } | FieldSection::Terrain(_) => {}
+            FieldSection::Formula { .. } | FieldSection::Volume { .. } | FieldSection::Grid { .. } => {}
+            FieldSection::Terrain(_) => {}
         }
     }
     fields

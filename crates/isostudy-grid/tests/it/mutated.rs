@@ -1,5 +1,10 @@
 //! Files damaged in every way: no panic, and what is read all the same is sound.
 
+use std::sync::Arc;
+
+use isostudy_field::StudyField;
+use isostudy_grid::GridField;
+use isostudy_mesh::Bounds;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -118,7 +123,18 @@ fn run(reader: &str, rounds: u64, seed: u64) {
                 assert!(
                     surface.mesh.triangles.iter().flatten().all(|&v| (v as usize) < surface.crossings.len())
                 );
-                let _ = grid.oddities();
+                let odd = grid.oddities();
+                assert!(odd.without_value <= grid.tetrahedra().len() as u64);
+                if let Ok(field) = GridField::try_new(Arc::new(grid)) {
+                    let Bounds { min, max } = field.bounds();
+                    for share in [0.0, 0.3, 0.5, 1.5] {
+                        let p = min + share * (max - min);
+                        assert!(
+                            field.sample(p).to_bits() == field.sample(p).to_bits(),
+                            "round {round} of {seed}"
+                        );
+                    }
+                }
                 read += 1;
             }
             Err(error) => {

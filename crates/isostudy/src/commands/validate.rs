@@ -30,7 +30,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         let grid = prepare::grid(object, object.benchmark_spacing);
         let [x, y, z] = match recipe::recipe(&study, configuration.id.method, Purpose::Benchmark)? {
             Recipe::Extractor(method) => method.cells(&grid)?,
-            Recipe::Program(_) | Recipe::Meshes(_) => grid.lattice(Arrangement::SimpleCubic)?.cells(),
+            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::GridCells => {
+                grid.lattice(Arrangement::SimpleCubic)?.cells()
+            }
         };
         let (name, label) = (&object.name, &study.method(configuration.id.method).label);
         let line = format!("{}  {name}, {label}, {x} x {y} x {z} cubes", configuration.id);

@@ -184,7 +184,7 @@ pub(super) fn timed(study: &Study) -> Result<Vec<&Configuration>> {
     for configuration in &study.configurations {
         match recipe(study, configuration.id.method, Purpose::Benchmark)? {
             Recipe::Meshes(_) => {}
-            Recipe::Extractor(_) | Recipe::Program(_) => timed.push(configuration),
+            Recipe::Extractor(_) | Recipe::Program(_) | Recipe::GridCells => timed.push(configuration),
         }
     }
     Ok(timed)
@@ -198,8 +198,15 @@ pub(super) fn is_program(study: &Study, configuration: &Configuration) -> bool {
 
 /// The configurations that a study's sweep is about: those of its objects that have a time at any resolution.
 pub(super) fn swept<'s>(study: &'s Study, section: &SweepSection) -> Result<Vec<&'s Configuration>> {
-    let mut swept = timed(study)?;
-    swept.retain(|configuration| section.objects.contains(&configuration.id.object));
+    let mut swept = Vec::new();
+    for configuration in timed(study)? {
+        // The cells of a grid have one resolution.
+        let is_of_cells =
+            matches!(recipe(study, configuration.id.method, Purpose::Indexed)?, Recipe::GridCells);
+        if section.objects.contains(&configuration.id.object) && !is_of_cells {
+            swept.push(configuration);
+        }
+    }
     Ok(swept)
 }
 

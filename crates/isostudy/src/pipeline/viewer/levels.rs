@@ -131,6 +131,7 @@ impl Pipeline<'_> {
     ) -> Result<Result<Made, String>> {
         match &prepared.recipe {
             Recipe::Meshes(_) => return Ok(Err("its meshes are files of one resolution".into())),
+            Recipe::GridCells => return Ok(Err("its grid has cells of one resolution".into())),
             Recipe::Extractor(method) => {
                 if let Err(refused) = method.check(&prepared.grid) {
                     return Ok(Err(refused.to_string()));
