@@ -8,7 +8,7 @@ ifndef SEED
 SEED := $(shell od -An -N4 -tu4 /dev/urandom | tr -d ' ')
 endif
 
-.PHONY: help study test test-long quick terrain bench bench-sweep figures check bunny three viewer-library clean
+.PHONY: help study test test-long attacks quick terrain bench bench-sweep figures check bunny three viewer-library clean
 
 help: ## list these entries
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 11
@@ -26,6 +26,13 @@ test-long: bunny ## run the tests that take minutes: 74,640 volumes against the 
 	@echo "random tests draw with the seed $(SEED); \`make test-long SEED=$(SEED)\` repeats them"
 	@PROPTEST_RNG_SEED=$(SEED) cargo test --release --locked --workspace --no-fail-fast -- --include-ignored || \
 	{ echo "failed with the seed $(SEED): repeat it by \`make test-long SEED=$(SEED)\`" >&2; exit 1; }
+
+attacks: bunny ## attack the command: bad programs, 20,000 damaged files, a server and a study under kills, full disks and removed folders
+	cargo build --release --locked -p isostudy
+	scripts/attack-programs.py target/release/isostudy
+	scripts/attack-readers.py target/release/isostudy 20000 $(SEED)
+	scripts/attack-server.py target/release/isostudy
+	scripts/attack-study.py target/release/isostudy
 
 quick: bunny viewer-library ## the same study made small, into results/quick/
 	$(ISOSTUDY) study configs/quick.toml

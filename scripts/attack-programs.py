@@ -7,9 +7,9 @@ For each program: the exit code must be 1 or 2 (0 for those that are no attack),
 command below 300 MB, and no process and no temporary folder may stay. Exit 1 if one does not keep to it.
 """
 
-import itertools
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -146,8 +146,11 @@ def attacks():
         yield "method", name, f"say(READY)\nrequest = json.loads(sys.stdin.readline()); MESH = request['mesh']\n{deed}\nsay(DONE)"
     for name, deed in DEEDS.items():
         yield "binary", f"at the start: {name}", deed
-    for name, deed in itertools.islice(DEEDS.items(), 40):
+    for name, deed in DEEDS.items():
         yield "binary", f"when asked: {name}", f"say(BENCH)\nsys.stdin.readline()\n{deed}"
+    if shutil.which("bwrap"):
+        for name, deed in DEEDS.items():
+            yield "sandboxed", f"when asked: {name}", f"say(READY)\nrequest = json.loads(sys.stdin.readline())\n{deed}"
 
 
 def study(folder, isostudy):
@@ -188,9 +191,10 @@ def main():
             mark = f"ATTACK={os.getpid()}-{count}"
             environment = {**os.environ, "TMPDIR": str(folder / "tmp"), "XDG_STATE_HOME": str(folder / "state"), "ATTACK": mark[7:]}
             text = LANGUAGE + source + "\ntime.sleep(1000)\n"
-            if kind == "method":
+            if kind != "binary":
                 (folder / "my/attack.py").write_text(text)
                 words = ["extract", "my/attacked.toml", "--out", "out", "--only", first, "--allow-programs"]
+                words += ["--sandbox"] * (kind == "sandboxed")
             else:
                 (folder / "binary").write_text("#!/usr/bin/env python3" + text)
                 (folder / "binary").chmod(0o755)
