@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use isostudy_foreign::shown;
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, PoisonError};
@@ -17,9 +18,24 @@ macro_rules! tell {
 // After the macro, which it uses.
 pub(crate) mod progress;
 
+/// The most characters of a line on standard error. A message may quote a line of somebody's file, which can be as long as the file.
+const MOST_OF_A_LINE: usize = 2000;
+
 /// What `tell!` says.
 pub(crate) fn tell_shown(words: &str) {
-    let _ = writeln!(std::io::stderr(), "{}", shown(words));
+    let words = shown(words);
+    let lines: Vec<_> = words.split('\n').map(shortened).collect();
+    let _ = writeln!(std::io::stderr(), "{}", lines.join("\n"));
+}
+
+fn shortened(line: &str) -> Cow<'_, str> {
+    match line.char_indices().nth(MOST_OF_A_LINE) {
+        None => line.into(),
+        Some((end, _)) => {
+            format!("{} ({} characters more)", &line[..end], grouped(line[end..].chars().count() as u64))
+                .into()
+        }
+    }
 }
 
 /// Says a line as `tell!` does, unless this process or one that it measures with has said it before.
@@ -70,6 +86,17 @@ pub(crate) fn significant(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn of_a_long_line_the_beginning_is_told() {
+        assert_eq!(shortened("a line"), "a line");
+        let most = "\u{e9}".repeat(MOST_OF_A_LINE);
+        assert_eq!(shortened(&most), most);
+        assert_eq!(
+            shortened(&format!("{most}{}", "x".repeat(70_000))),
+            format!("{most} (70,000 characters more)")
+        );
+    }
 
     #[test]
     fn digits_are_grouped_by_three() {
