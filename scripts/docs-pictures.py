@@ -4,12 +4,13 @@
 Usage: scripts/docs-pictures.py [ISOSTUDY [PICTURE...]]
 
 ISOSTUDY is the command, `isostudy` if left out; PICTURE one of six-methods, surfaces, edge-groups, terrain, methods (a folder and a sheet),
-methods-drops, methods-box and labels, all if left out.
+methods-drops, methods-box, labels and scattered, all if left out.
 Run it in the project's folder; it needs Pillow. surfaces and labels need `scripts/fetch-samples.sh` first.
 """
 
 import json
 import math
+import struct
 import subprocess
 import sys
 import tempfile
@@ -18,7 +19,7 @@ from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
 
-from posed_mesh import pose
+from posed_mesh import pose, read_ply
 
 METHODS = [
     ("bu", "no clustering"),
@@ -76,6 +77,15 @@ BOX = [
 
 # Of docs/nets.md: three balls that meet, cut through the middle, on so many samples along x, y and z.
 BALLS = {"size": (44, 20, 40), "radius": 11.3, "centres": [(13.7, 0, 14.2), (27.3, 0, 14.2), (20.5, 0, 25.9)]}
+
+# Of docs/scattered.md: a lumpy ring, its scan without what lies round one place, and its triangles without every seventh.
+RING = [
+    *("--field", "sqrt((sqrt(x^2 + y^2) - 0.7)^2 + z^2) - 0.28 - 0.08*noise(x*4, y*4, z*4)"),
+    "--bounds=-1.2,-1.2,-0.5,1.2,1.2,0.5",
+]
+HOLE = ((0.5, 0.55, 0.25), 0.3)  # centre, radius
+RING_POSE = {"middle": (0, 0, 0), "turn": 0, "tilt": 0.5, "half": 1.6}
+RING_SEEN = (0.22, 0.29, 0.78, 0.71)
 
 FONT = "assets/fonts/DejaVuSans.ttf"
 RENDERED = 1120  # pixels of the whole picture of an asteroid, of which a crop is shown
@@ -161,6 +171,60 @@ def labels(isostudy, folder):
         mesh, picture = folder / f"{number}.ply", folder / f"{number}.png"
         run(isostudy, "extract", "--labels", source, *more, "-o", mesh, "--picture", picture)
         yield Image.open(picture).convert("RGB"), title, triangles(mesh)
+
+
+def scattered(isostudy, folder):
+    """A scan with a hole and soup with holes, each beside the surface that is extracted."""
+    whole, scan, dots, soup, surface = (folder / name for name in ("ring.ply", "scan.xyz", "dots.ply", "soup.ply", "of.ply"))
+    run(isostudy, "extract", *RING, "--spacing", "0.08", "--method", "bi-relaxed", "-o", whole)
+    positions, corners = read_ply(whole)
+    kept = [(p, n) for p, n in zip(positions, normals(positions, corners)) if math.dist(p, HOLE[0]) > HOLE[1]]
+    scan.write_text("".join(" ".join(f"{x:.6f}" for x in (*p, *n)) + "\n" for p, n in kept))
+    octahedra = [
+        [tuple(x + 0.016 * step for x, step in zip(p, corner)) for corner in ((sx, 0, 0), (0, sy, 0), (0, 0, sz))]
+        for p, _ in kept
+        for sx in (-1, 1)
+        for sy in (-1, 1)
+        for sz in (-1, 1)
+    ]
+    write_soup(dots, [t if octant in (7, 1, 2, 4) else t[::-1] for octant, t in zip([*range(8)] * len(kept), octahedra)])
+    left = [[positions[v] for v in t] for number, t in enumerate(corners) if number % 7 != 3]
+    write_soup(soup, left)
+    fine = ["--bounds=-1.2,-1.2,-0.6,1.2,1.2,0.6", "--spacing", "0.05", "--method", "bi-relaxed", "-o", surface]
+
+    def seen(mesh):
+        posed = folder / "posed.obj"
+        pose(mesh, posed, **RING_POSE)
+        return part(turned(isostudy, folder, posed, 1200, "--look", "flat"), RING_SEEN)
+
+    yield seen(dots), "a scan with a hole", f"{len(kept):,} points with normals"
+    run(isostudy, "extract", "--points", scan, *fine)
+    yield seen(surface), "its surface", f"{triangles(surface)}, closed"
+    yield seen(soup), "soup without a seventh", f"{len(left):,} triangles of {len(corners):,}"
+    run(isostudy, "extract", "--soup", soup, *fine)
+    yield seen(surface), "its surface", f"{triangles(surface)}, closed"
+
+
+def normals(positions, corners):
+    """Of each vertex, the sum of its triangles' normals by area."""
+    sums = [[0.0, 0.0, 0.0] for _ in positions]
+    for t in corners:
+        a, b, c = (positions[v] for v in t)
+        u, v = ([q - p for p, q in zip(a, other)] for other in (b, c))
+        normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+        for vertex in t:
+            sums[vertex] = [x + y for x, y in zip(sums[vertex], normal)]
+    return sums
+
+
+def write_soup(path, corners):
+    """Triangles, each with corners of its own, as posed_mesh.py reads a mesh."""
+    header = f"ply\nformat binary_little_endian 1.0\nelement vertex {3 * len(corners)}\n"
+    header += "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+    header += f"element face {len(corners)}\nproperty list uchar uint vertex_indices\nend_header\n"
+    body = b"".join(struct.pack("<6f", *p, 0, 0, 0) for t in corners for p in t)
+    faces = b"".join(struct.pack("<B3I", 3, 3 * t, 3 * t + 1, 3 * t + 2) for t in range(len(corners)))
+    path.write_bytes(header.encode() + body + faces)
 
 
 def drops(isostudy, folder):
@@ -332,6 +396,7 @@ def main():
             "six-methods": lambda to: save(montage(six_methods(isostudy, folder), 3, (320, 260)), to),
             "surfaces": lambda to: save(montage(surfaces(isostudy, folder), 4, (280, 280)), to),
             "labels": lambda to: save(montage(labels(isostudy, folder), 3, (300, 300)), to),
+            "scattered": lambda to: save(montage(scattered(isostudy, folder), 4, (300, 225)), to),
             "edge-groups": lambda to: run(isostudy, "table", *TABLES, "--groups", "--figure", to),
             "terrain": lambda to: save(montage(terrain(isostudy, folder), 4, (250, 188)), to),
             "methods": lambda _: of_methods(isostudy, folder),

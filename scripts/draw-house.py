@@ -32,6 +32,7 @@ ONLY = {
     "isostudy-volume": {"isostudy"},
     "isostudy-grid": {"isostudy"},
     "isostudy-program": {"isostudy"},
+    "isostudy-scattered": {"isostudy"},
 }
 # All crates of the workspace that these may use themselves.
 KNOWS = {

@@ -22,6 +22,7 @@ mod memory;
 mod messages;
 mod named;
 mod page;
+mod scattered;
 mod serve;
 mod server;
 mod study;

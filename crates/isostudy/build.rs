@@ -17,6 +17,7 @@ const CRATES: [&str; 22] = [
     "expression",
     "volume",
     "grid",
+    "scattered",
     "extract",
     "trilinear",
     "program",

@@ -13,7 +13,7 @@ mod viewer;
 
 pub use crate::method::{BudgetSection, Quantity, StimulusLook};
 pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
-pub use field::{FieldSection, Inside, MeshSourceSection};
+pub use field::{FieldSection, Inside, MeshSourceSection, PointKernel, PointNormals};
 pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
 pub use methods::{FactorSection, LevelSection, MethodSection, SpeltLevel};
 pub use pictures::{LightFollows, Look, ShadingSection, StillSection, TurntableSection};

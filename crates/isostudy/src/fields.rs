@@ -4,6 +4,7 @@ use crate::grid_file;
 use crate::input;
 use crate::memory::{Limit, OfVolume};
 use crate::mesh_file;
+use crate::scattered_file::{self, WantedPoints};
 use crate::source::{self, Options};
 use crate::store::{sha256, sha256_of};
 use crate::study_key::place;
@@ -11,11 +12,12 @@ use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
 use glam::{DVec3, Vec3};
 use isostudy_design::Study;
-use isostudy_design::config::{FieldSection, MeshSourceSection, ObjectSection};
+use isostudy_design::config::{FieldSection, MeshSourceSection, ObjectSection, PointKernel, PointNormals};
 use isostudy_design::wording::{did_you_mean, plainly};
 use isostudy_field::{Asteroid, MeshDistance, Sphere, StudyField, Terrain, TerrainCharacter};
 use isostudy_grid::{Grid, GridField};
 use isostudy_mesh::{Bounds, TriangleMesh};
+use isostudy_scattered::{FitSettings, Kernel, PointSettings};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -103,7 +105,31 @@ fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<ObjectFi
         FieldSection::Grid { file, array, inside } => {
             of_grid(study, object, (file, array.as_deref(), *inside))
         }
+        FieldSection::Points { file, inside, close, .. } => {
+            let options = options(study, object, *inside, *close);
+            Ok(of(options.of_points(&study.resolve(file), &wanted_points(&object.field))?))
+        }
+        FieldSection::Soup { file, epsilon, inside, close } => {
+            let options = options(study, object, *inside, *close);
+            Ok(of(options.of_soup(&study.resolve(file), *epsilon)?))
+        }
         FieldSection::Terrain(keys) => as_it_is(Box::new(TerrainKeys::of(keys)?.terrain(bounds(object))?)),
+    }
+}
+
+/// What a study asks of points; the defaults for other fields.
+fn wanted_points(field: &FieldSection) -> WantedPoints {
+    let FieldSection::Points { normals, kernel, offset, smoothing, centres, .. } = field else {
+        return WantedPoints::default();
+    };
+    let kernel = match kernel {
+        PointKernel::Biharmonic => Kernel::Biharmonic,
+        PointKernel::Triharmonic => Kernel::Triharmonic,
+    };
+    let fit = FitSettings { kernel, smoothing: *smoothing, most_centres: *centres as usize };
+    WantedPoints {
+        are_normals_estimated: *normals == PointNormals::Estimated,
+        settings: PointSettings { fit, offset: *offset },
     }
 }
 
@@ -288,6 +314,9 @@ pub(crate) fn files(study: &Study, number: usize) -> Result<Vec<(String, String)
             let (source, path) = present_source(study, number, object)?;
             Ok(vec![named(&source.file, &path)?])
         }
+        FieldSection::Points { file, .. } | FieldSection::Soup { file, .. } => {
+            Ok(vec![named(file, &study.resolve(file))?])
+        }
         FieldSection::Volume { file, .. } => {
             let path = study.resolve(file);
             let read = || {
@@ -341,10 +370,16 @@ pub(crate) fn check(study: &Study) -> Result<()> {
                 read_checked(&source, &path).with_context(|| format!("{}: {}", place(), path.display()))?;
             }
             FieldSection::Volume { file, .. } | FieldSection::Grid { file, .. } => {
-                let path = study.resolve(file);
-                if !path.is_file() {
-                    bail!("{}.file names {}: no such file", place(), path.display());
-                }
+                present_file(study, file, &place)?;
+                check_sides(study, number, object)?;
+            }
+            // A fit may take long, and is made when a mesh is.
+            FieldSection::Points { file, .. } => {
+                let path = present_file(study, file, &place)?;
+                scattered_file::check_points(&path, &wanted_points(&object.field)).with_context(place)?;
+            }
+            FieldSection::Soup { file, .. } => {
+                present_file(study, file, &place)?;
                 check_sides(study, number, object)?;
             }
             FieldSection::Sphere { .. } | FieldSection::Formula { .. } | FieldSection::Terrain(_) => {
@@ -353,6 +388,15 @@ pub(crate) fn check(study: &Study) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The path of a field's file, which is there.
+fn present_file(study: &Study, file: &str, place: &dyn Fn() -> String) -> Result<PathBuf> {
+    let path = study.resolve(file);
+    if !path.is_file() {
+        bail!("{}.file names {}: no such file", place(), path.display());
+    }
+    Ok(path)
 }
 
 fn check_sides(study: &Study, number: usize, object: &ObjectSection) -> Result<()> {

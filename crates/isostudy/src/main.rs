@@ -34,6 +34,7 @@ mod recipe;
 mod records;
 mod region;
 mod run_file;
+mod scattered_file;
 mod seeds;
 mod source;
 mod source_digests;
@@ -76,7 +77,7 @@ enum Command {
     New(commands::new::Arguments),
     /// Do everything: meshes, animations, short benchmark, tables, figures, index.html
     Study(commands::study::Arguments),
-    /// Extract a surface from a formula, a volume or a mesh; or, given a study, the study's meshes, and measure them
+    /// Extract a surface from a formula, a volume, a mesh, points or soup; or, given a study, the study's meshes, and measure them
     Extract(Box<commands::extract::Arguments>),
     /// List the methods that have a name, what each promises, and its source
     Methods(commands::methods::Arguments),

@@ -21,7 +21,7 @@ const MEMORY_LIMIT: u64 = 300 << 20;
 const WRITTEN: [(&str, &str); 5] =
     [("", "out"), ("", "picture"), ("", "figure"), ("new", "folder"), ("serve", "answers")];
 /// What else has to be said for an argument to be taken.
-const BESIDE: [(&str, &str, &[&str]); 15] = [
+const BESIDE: [(&str, &str, &[&str]); 21] = [
     ("analyse", "responses", &["my/study.toml"]),
     ("analyse", "mapping", &["answers.csv"]),
     ("distance", "a", &["ball.obj"]),
@@ -31,11 +31,17 @@ const BESIDE: [(&str, &str, &[&str]); 15] = [
     ("extract", "grid", &["--isovalue", "0", "-o", "x.ply"]),
     ("extract", "labels", &["-o", "x.ply"]),
     ("extract", "mesh", &["-o", "x.ply"]),
+    ("extract", "points", &["-o", "x.ply"]),
+    ("extract", "soup", &["-o", "x.ply"]),
     ("extract", "study", &["-o", "x"]),
     ("table", "volume", &["--groups", "--isovalue", "0"]),
     ("table", "mesh", &["--groups"]),
+    ("table", "points", &["--groups"]),
+    ("table", "soup", &["--groups"]),
     ("turntable", "volume", &["--colour", "error", "--isovalue", "0", "-o", "x.gif"]),
     ("turntable", "mesh", &["--colour", "error", "-o", "x.gif"]),
+    ("turntable", "points", &["--colour", "error", "-o", "x.gif"]),
+    ("turntable", "soup", &["--colour", "error", "-o", "x.gif"]),
     ("distance", "volume", &["--isovalue", "0"]),
 ];
 
@@ -73,7 +79,7 @@ fn ending(id: &str) -> &'static str {
     match id {
         "volume" | "labels" => "nrrd",
         "grid" => "vtu",
-        "mesh" | "a" | "b" => "ply",
+        "mesh" | "a" | "b" | "points" | "soup" => "ply",
         "tables" | "spacings" | "run" => "json",
         "responses" | "downloads" | "table" | "spread_of" => "csv",
         _ => "toml",

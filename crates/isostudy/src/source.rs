@@ -1,9 +1,10 @@
-//! Where a surface comes from: a formula, a volume or a mesh; and where it is looked at.
+//! Where a surface comes from: a formula, a volume, a mesh, points or polygon soup; and where it is looked at.
 
 use crate::file_samples::{FileSamples, Parts, field_bytes, stays_in_file};
 use crate::memory::{Limit, OfVolume};
 use crate::mesh_file;
 use crate::place::place;
+use crate::scattered_file::{self, WantedPoints};
 use crate::seeds;
 use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
@@ -309,6 +310,40 @@ impl Options {
             self.of_field(Box::new(field), Inside::Above, tight.grown(room), &path.display().to_string());
         source.values = format!("; the mesh reaches from {} to {}", place(tight.min), place(tight.max));
         Ok(if self.close { source.closed() } else { source })
+    }
+
+    /// The spline through points in a file.
+    ///
+    /// # Errors
+    /// If they cannot be read, or make no surface.
+    pub(crate) fn of_points(&self, path: &Path, wanted: &WantedPoints) -> Result<Source> {
+        let field = scattered_file::points(path, wanted)?;
+        let tight = field.bounds();
+        Ok(self.of_scattered(Box::new(field), tight, path, "points"))
+    }
+
+    /// The field of triangles in a file that need not hang together.
+    ///
+    /// # Errors
+    /// If they cannot be read, or all are flat.
+    pub(crate) fn of_soup(&self, path: &Path, epsilon: Option<f64>) -> Result<Source> {
+        let field = scattered_file::soup(path, epsilon)?;
+        let tight = field.bounds();
+        Ok(self.of_scattered(Box::new(field), tight, path, "triangles"))
+    }
+
+    fn of_scattered(
+        &self,
+        field: Box<dyn StudyField + Send>,
+        tight: Bounds,
+        path: &Path,
+        what: &str,
+    ) -> Source {
+        // Room for a surface that bulges where nothing is given.
+        let room = 0.1 * tight.size().max_element() + self.isovalue.abs();
+        let mut source = self.of_field(field, Inside::Above, tight.grown(room), &path.display().to_string());
+        source.values = format!("; the {what} reach from {} to {}", place(tight.min), place(tight.max));
+        if self.close { source.closed() } else { source }
     }
 }
 

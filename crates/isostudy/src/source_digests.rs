@@ -11,6 +11,7 @@ const TRILINEAR: &str = env!("ISOSTUDY_SOURCES_TRILINEAR");
 const EXPRESSION: &str = env!("ISOSTUDY_SOURCES_EXPRESSION");
 const VOLUME: &str = env!("ISOSTUDY_SOURCES_VOLUME");
 const GRID: &str = env!("ISOSTUDY_SOURCES_GRID");
+const SCATTERED: &str = env!("ISOSTUDY_SOURCES_SCATTERED");
 const PROGRAM: &str = env!("ISOSTUDY_SOURCES_PROGRAM");
 const STATISTICS: &str = env!("ISOSTUDY_SOURCES_STATISTICS");
 const TABLE: &str = env!("ISOSTUDY_SOURCES_TABLE");
@@ -26,12 +27,12 @@ const CLI: &str = env!("ISOSTUDY_SOURCES_CLI");
 
 /// What makes meshes.
 pub(crate) const MESHES: &[&str] =
-    &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, GRID, CELLS, EXTRACT, TRILINEAR, PROGRAM, CLI];
+    &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, GRID, SCATTERED, CELLS, EXTRACT, TRILINEAR, PROGRAM, CLI];
 /// What makes pictures of meshes.
 pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.
 pub(crate) const TIMINGS: &[&str] =
-    &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, GRID, CELLS, EXTRACT, PROGRAM, BENCH, CLI];
+    &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, GRID, SCATTERED, CELLS, EXTRACT, PROGRAM, BENCH, CLI];
 /// What makes tables, figures and the report.
 pub(crate) const TABLES: &[&str] =
     &[DESIGN, RESPONSES, STATISTICS, TABLE, TIMING, INFERENCE, REPORT, PAPER, CLI, PAGE];

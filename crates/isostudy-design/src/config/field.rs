@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::whole;
+
 /// A scalar field, and on which side of its isovalue the solid is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
@@ -58,6 +60,48 @@ pub enum FieldSection {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         inside: Option<Inside>,
     },
+    /// A spline through points with normals, as of a scan: 0 at the points, positive inside.
+    Points {
+        /// PLY, XYZ or OBJ.
+        file: String,
+        /// Where normals come from.
+        #[serde(default, skip_serializing_if = "is_default")]
+        normals: PointNormals,
+        /// How a centre of the spline acts at a distance.
+        #[serde(default, skip_serializing_if = "is_default")]
+        kernel: PointKernel,
+        /// How far beside the surface values are given, in the unit of coordinates; twice the median distance between neighbours unless
+        /// given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        offset: Option<f64>,
+        /// Above 0 the surface passes by the points and is smoother. In the unit of the kernel.
+        #[serde(default, skip_serializing_if = "is_default")]
+        smoothing: f64,
+        /// The most centres: of more places with a value, those are chosen where the error is largest.
+        #[serde(default = "usual_centres", skip_serializing_if = "is_usual", deserialize_with = "whole")]
+        centres: u32,
+        /// Which side is solid; above unless given, where no normal points.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        inside: Option<Inside>,
+        /// Whether the object's volume has walls, so that a surface that would leave it is closed.
+        #[serde(default, skip_serializing_if = "is_false")]
+        close: bool,
+    },
+    /// The mean of signed distances to the planes of triangles, which need not hang together, by nearness: positive inside.
+    Soup {
+        /// OBJ, PLY or STL.
+        file: String,
+        /// The distance that the weight is rounded off by, in the unit of coordinates; 1 % of the diagonal of the triangles' box unless
+        /// given. With 0 the surface goes through the triangles.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        epsilon: Option<f64>,
+        /// Which side is solid; above unless given, behind the triangles.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        inside: Option<Inside>,
+        /// Whether the object's volume has walls, so that a surface that would leave it is closed.
+        #[serde(default, skip_serializing_if = "is_false")]
+        close: bool,
+    },
     /// Ground with hills, cliffs or caves: `character`, `seed` and what differs from the character. Whoever makes the field
     /// reads the keys.
     Terrain(toml::Table),
@@ -65,6 +109,40 @@ pub enum FieldSection {
 
 fn is_false(flag: &bool) -> bool {
     !flag
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+fn usual_centres() -> u32 {
+    3000
+}
+
+fn is_usual(centres: &u32) -> bool {
+    *centres == usual_centres()
+}
+
+/// Where the normals of points come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PointNormals {
+    /// From the file.
+    #[default]
+    Given,
+    /// From the planes of neighbours.
+    Estimated,
+}
+
+/// How a centre of a spline acts at a distance `r`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PointKernel {
+    /// As `-r`.
+    #[default]
+    Biharmonic,
+    /// As `r^3`.
+    Triharmonic,
 }
 
 /// Which side of an isovalue is solid.

@@ -227,8 +227,18 @@ fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), C
         FieldSection::Formula { text, .. } => {
             c.text(&format!("{key}.text"), text, "must be a formula in x, y and z")
         }
-        FieldSection::Volume { file, .. } | FieldSection::Grid { file, .. } => {
-            c.text(&format!("{key}.file"), file, "must name a file")
+        FieldSection::Volume { file, .. } | FieldSection::Grid { file, .. } => c.text(&format!("{key}.file"), file, "must name a file"),
+        FieldSection::Points { file, offset, smoothing, centres, .. } => {
+            c.text(&format!("{key}.file"), file, "must name a file")?;
+            if let Some(offset) = offset {
+                c.length(&format!("{key}.offset"), *offset, 1e6)?;
+            }
+            c.number(&format!("{key}.smoothing"), *smoothing, 0.0, 1e6)?;
+            c.count(&format!("{key}.centres"), *centres, 4, 10_000)
+        }
+        FieldSection::Soup { file, epsilon, .. } => {
+            c.text(&format!("{key}.file"), file, "must name a file")?;
+            epsilon.map_or(Ok(()), |epsilon| c.number(&format!("{key}.epsilon"), epsilon, 0.0, 1e6))
         }
         FieldSection::Terrain(_) => Ok(()),
     }

@@ -112,7 +112,7 @@ fn names_are_those_that_are_taken() {
             tried += 1;
         }
     }
-    assert_eq!(tried, 15);
+    assert_eq!(tried, 19);
 }
 
 #[test]
@@ -405,7 +405,7 @@ fn full_study() -> StudyFile {
 }
 
 /// A field of each kind but terrains, which are opaque.
-fn fields() -> [FieldSection; 7] {
+fn fields() -> [FieldSection; 9] {
     let inside = Some(Inside::Above);
     let text = String::new;
     let source = MeshSourceSection {
@@ -422,6 +422,17 @@ fn fields() -> [FieldSection; 7] {
         FieldSection::Formula { text: text(), inside, close: true },
         FieldSection::Volume { file: text(), inside, close: true },
         FieldSection::Grid { file: text(), array: Some(text()), inside },
+        FieldSection::Points {
+            file: text(),
+            normals: PointNormals::Estimated,
+            kernel: PointKernel::Triharmonic,
+            offset: Some(1.0),
+            smoothing: 1.0,
+            centres: 4,
+            inside,
+            close: true,
+        },
+        FieldSection::Soup { file: text(), epsilon: Some(1.0), inside, close: true },
         FieldSection::Terrain(Table::new()),
     ];
     for field in &fields {
@@ -429,7 +440,7 @@ fn fields() -> [FieldSection; 7] {
         match field {
             FieldSection::Sphere { .. } | FieldSection::Asteroid {} | FieldSection::Mesh { .. } => {}
             FieldSection::Formula { .. } | FieldSection::Volume { .. } | FieldSection::Grid { .. } => {}
-            FieldSection::Terrain(_) => {}
+            FieldSection::Terrain(_) | FieldSection::Points { .. } | FieldSection::Soup { .. } => {}
         }
     }
     fields

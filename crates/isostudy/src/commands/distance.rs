@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 const SCHEMA: u32 = 1;
 
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("second").args(["b", "field", "volume", "mesh", "object"]).required(true)))]
+#[command(group(ArgGroup::new("second").args(["b", "field", "volume", "mesh", "points", "soup", "object"]).required(true)))]
 #[command(
     override_usage = "isostudy distance [OPTIONS] <A> <B|--field <FORMULA>|--volume <FILE>|--mesh <FILE>|--object <ID>>"
 )]
@@ -114,7 +114,7 @@ fn to_object(arguments: &Arguments, a: &Surface, id: &str, sampling: &Sampling) 
         .with_context(|| format!("{} and {id}, with spacing {spacing}", arguments.a.display()))
 }
 
-/// Against the isosurface of a formula, a volume or a mesh's distance, in its box.
+/// Against the isosurface of a formula, a volume, a mesh's distance, points or soup, in its box.
 fn to_source(arguments: &Arguments, a: &Surface, sampling: &Sampling) -> Result<(String, Metro)> {
     let (method, execution) = (lattice(), Execution { threads: arguments.threads as usize });
     let source =

@@ -1,4 +1,4 @@
-//! `isostudy extract`: the meshes of a study, or the surface of a formula, a volume or a mesh in a file.
+//! `isostudy extract`: the meshes of a study, or the surface of a formula, or of a volume, a mesh, points or soup in a file.
 
 mod chosen_method;
 mod grid;
@@ -33,7 +33,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh", "grid", "labels"]).required(true)))]
+#[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh", "points", "soup", "grid", "labels"]).required(true)))]
 #[command(after_help = "\
 Examples:
   isostudy extract --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2 --spacing 0.05 -o ball.ply
@@ -43,6 +43,7 @@ Examples:
   isostudy extract --volume head.nrrd --isovalues 100:1500:15 -o 'head-{isovalue}.ply' --method mc
   isostudy extract --field 'max(abs(x), max(abs(y), abs(z))) - 1' --bounds=-2,-2,-2,2,2,2 -o box.glb --method dc-in-cell --crease-deg 40
   isostudy extract --mesh scan.stl --cells 200 -o even.obj --picture even.png --method bi-relaxed
+  isostudy extract --points scan.ply --cells 80 -o surface.glb
   isostudy extract configs/paper.toml --only ss_bi")]
 pub(crate) struct Arguments {
     /// Study file, such as configs/paper.toml: extract its meshes and measure them
@@ -98,16 +99,16 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
     threads: u32,
     /// Of a study, redo what is up to date as well
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "grid", "labels"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid", "labels"])]
     force: bool,
     /// Of a study, run the programs that it names as methods; they may do whatever you may do
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "grid", "labels"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid", "labels"])]
     allow_programs: bool,
     /// Of a study, run programs by bubblewrap: without a network, in a folder of their own, the system read-only
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "grid", "labels"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid", "labels"])]
     sandbox: bool,
     /// Of a study, only these configurations, such as ss_bi; of labels, only these, such as 2,5 [default: all]
-    #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh", "grid"])]
+    #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid"])]
     only: Vec<String>,
 }
 
@@ -277,7 +278,7 @@ fn on_a_grid(
     let source = arguments
         .source
         .read_in_file_for(method, execution)?
-        .context("one of a study, --field, --volume and --mesh is needed")?;
+        .context("one of a study, --field, --volume, --mesh, --points and --soup is needed")?;
     let execution = &source.execution(execution);
     let grid = source.grid();
     let limit = arguments.source.limit();

@@ -1,12 +1,14 @@
-//! The options that name a surface: a formula, a volume or a mesh, and where to look at it.
+//! The options that name a surface: a formula, a volume, a mesh, points or polygon soup, and where to look at it.
 
 use crate::memory::{self, Limit};
+use crate::scattered_file::WantedPoints;
 use crate::source::{Inside, Options, Source};
 use anyhow::{Context, Result};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use glam::Vec3;
 use isostudy_extract::{Execution, Method};
 use isostudy_mesh::Bounds;
+use isostudy_scattered::{FitSettings, Kernel, PointSettings};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -20,7 +22,9 @@ pub(crate) struct SourceArguments {
     /// Triangle mesh, of which the signed distance is taken: .obj, .ply or .stl
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Box to look at: smallest corner, then largest [default: that of the volume, or round the mesh]
+    #[command(flatten)]
+    scattered: ScatteredArguments,
+    /// Box to look at: smallest corner, then largest [default: that of the volume, or round the mesh, the points or the soup]
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Bounds>,
     /// Edge of the lattice's cubes [default: that of the volume's samples; otherwise 100 cubes along the longest side.
@@ -33,15 +37,15 @@ pub(crate) struct SourceArguments {
     /// Value of the surface
     #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true, group = "level")]
     isovalue: f32,
-    /// Side of the isovalue that is inside [default: below for a formula, above for a volume; a mesh's distance is
-    /// positive inside]
+    /// Side of the isovalue that is inside [default: below for a formula, above for a volume, points and soup; a mesh's
+    /// distance is positive inside]
     #[arg(long, value_name = "SIDE", conflicts_with = "mesh")]
     inside: Option<Inside>,
     /// Close the surface where it leaves the volume, and where the box cuts it off
     #[arg(long)]
     close: bool,
     /// Take a mesh with holes: inside is what is seen from behind in most directions
-    #[arg(long, conflicts_with_all = ["field", "volume"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "points", "soup"])]
     allow_open: bool,
     /// Most memory for a volume's samples, the lattice, and the mesh with what finishing it takes. Such as 500MB or 16GiB. `extract` reads
     /// parts of a raw volume that does not fit
@@ -52,10 +56,11 @@ pub(crate) struct SourceArguments {
 impl SourceArguments {
     /// The file that is read, if it is one.
     pub(super) fn file(&self) -> Option<&Path> {
-        self.volume.as_deref().or(self.mesh.as_deref())
+        let scattered = self.scattered.points.as_deref().or(self.scattered.soup.as_deref());
+        self.volume.as_deref().or(self.mesh.as_deref()).or(scattered)
     }
 
-    /// Whether a formula, a volume or a mesh is named.
+    /// Whether a surface is named.
     pub(super) fn is_given(&self) -> bool {
         self.field.is_some() || self.file().is_some()
     }
@@ -118,8 +123,87 @@ impl SourceArguments {
         if let Some(path) = &self.volume {
             return options.of_volume(path).map(Some);
         }
+        if let Some(path) = &self.scattered.points {
+            return options.of_points(path, &self.scattered.wanted()).map(Some);
+        }
+        if let Some(path) = &self.scattered.soup {
+            return options.of_soup(path, self.scattered.epsilon).map(Some);
+        }
         self.mesh.as_deref().map(|path| options.of_mesh(path)).transpose()
     }
+}
+
+/// Points and polygon soup, and how a field is made of them.
+#[derive(Debug, Args)]
+struct ScatteredArguments {
+    /// Points with normals, such as a scan, through which a smooth surface goes: .ply, .xyz or .obj
+    #[arg(long, value_name = "FILE")]
+    points: Option<PathBuf>,
+    /// Where the points' normals come from [default: given]
+    #[arg(long, value_name = "NAME", requires = "points")]
+    normals: Option<Normals>,
+    /// How a centre of the points' spline acts at a distance [default: biharmonic]
+    #[arg(long, value_name = "NAME", requires = "points")]
+    kernel: Option<PointKernel>,
+    /// How far beside the points values are given [default: twice the median distance between neighbours]
+    #[arg(long, value_name = "LENGTH", value_parser = length, requires = "points", allow_hyphen_values = true)]
+    offset: Option<f64>,
+    /// Above 0 the surface passes by the points and is smoother; in the unit of the kernel [default: 0]
+    #[arg(long, value_name = "NUMBER", value_parser = not_negative, requires = "points", allow_hyphen_values = true)]
+    smoothing: Option<f64>,
+    /// The most centres of the points' spline, 4 to 10000: of more places with a value, those with the largest errors [default: 3000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=10_000), requires = "points")]
+    centres: Option<u32>,
+    /// Triangles that need not hang together, near which the surface is: .obj, .ply or .stl
+    #[arg(long, value_name = "FILE")]
+    soup: Option<PathBuf>,
+    /// The distance within which the triangles of soup are blended; 0 goes through them [default: 1 % of the diagonal of their box]
+    #[arg(long, value_name = "LENGTH", value_parser = not_negative, requires = "soup", allow_hyphen_values = true)]
+    epsilon: Option<f64>,
+}
+
+/// Where the normals of points come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Normals {
+    /// From the file
+    Given,
+    /// From the planes of neighbours
+    Estimated,
+}
+
+/// How a centre of a spline acts at a distance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum PointKernel {
+    /// -r
+    Biharmonic,
+    /// r^3, which is smoother
+    Triharmonic,
+}
+
+impl ScatteredArguments {
+    fn wanted(&self) -> WantedPoints {
+        let kernel = match self.kernel {
+            Some(PointKernel::Triharmonic) => Kernel::Triharmonic,
+            Some(PointKernel::Biharmonic) | None => Kernel::Biharmonic,
+        };
+        let mut fit = FitSettings { kernel, ..FitSettings::default() };
+        fit.smoothing = self.smoothing.unwrap_or(fit.smoothing);
+        fit.most_centres = self.centres.map_or(fit.most_centres, |centres| centres as usize);
+        WantedPoints {
+            are_normals_estimated: self.normals == Some(Normals::Estimated),
+            settings: PointSettings { fit, offset: self.offset },
+        }
+    }
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    let value = not_negative(text)?;
+    if value > 0.0 { Ok(value) } else { Err("allowed: above 0, at most 1e6".into()) }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let value: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if (0.0..=1e6).contains(&value) { Ok(value) } else { Err("allowed: 0 to 1e6".into()) }
 }
 
 fn number(text: &str) -> Result<f32, String> {

@@ -60,7 +60,7 @@ pub(crate) struct Arguments {
 /// If there is no such table, or it is none; if the surface cannot be read.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if arguments.source.is_given() && !arguments.groups {
-        bail!("--field, --volume and --mesh are for --groups");
+        bail!("--field, --volume, --mesh, --points and --soup are for --groups");
     }
     if let Some(path) = &arguments.figure {
         figure::write(&arguments.tables, arguments.source.read()?, arguments.source.limit(), path)?;

@@ -93,7 +93,7 @@ struct OfMesh {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=400))]
     frames: Option<u32>,
     /// The isosurface for --colour error: of this object of a study; --spacing is the study's for its animations if not given
-    #[arg(long, value_name = "ID", conflicts_with_all = ["field", "volume", "mesh", "bounds", "cells", "isovalue", "inside", "close", "allow_open"])]
+    #[arg(long, value_name = "ID", conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "bounds", "cells", "isovalue", "inside", "close", "allow_open"])]
     object: Option<String>,
     /// Study that has the object
     #[arg(long, value_name = "TOML", default_value = "configs/paper.toml", requires = "object")]
