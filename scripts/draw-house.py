@@ -45,6 +45,7 @@ KNOWS = {
     "isostudy-table": set(),
     "isostudy-statistics": set(),
     "isostudy-trilinear": {"isostudy-mesh"},
+    "isostudy-finish": {"isostudy-mesh"},
 }
 # Crates that the first one must not reach, whatever the way.
 NEVER = {

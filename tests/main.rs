@@ -9,6 +9,7 @@ mod continuation;
 mod data;
 mod distance;
 mod edges;
+mod finish;
 mod fixture;
 mod football;
 mod foreign;

@@ -20,6 +20,7 @@ const CRATES: [&str; 22] = [
     "scattered",
     "extract",
     "trilinear",
+    "finish",
     "program",
     "raster",
     "bench",

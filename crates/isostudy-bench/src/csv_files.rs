@@ -32,9 +32,17 @@ const PROPERTY: [&str; 4] = ["property", "target", "machine", "matches"];
 
 /// Every sample in the order measured, a line each, under the column names of
 /// [`BenchSample`](isostudy_design::record::BenchSample) and [`Counters`](isostudy_design::record::Counters). Numbers are written so that they read back unchanged.
-/// Without samples the names stand alone.
+/// Without samples the names stand alone. Where some method is finished, `finishing_s` is the last column.
 pub fn samples_csv(samples: &[BenchSample]) -> String {
-    table(samples, &SAMPLE)
+    if samples.iter().all(|sample| sample.finishing_s == 0.0) {
+        return table(samples, &SAMPLE);
+    }
+    // A sample writes the column only where it is finished, and not at the end.
+    let rows: Vec<(BenchSample, f64)> = samples
+        .iter()
+        .map(|sample| (BenchSample { finishing_s: 0.0, ..sample.clone() }, sample.finishing_s))
+        .collect();
+    table(&rows, &[&SAMPLE[..], &["finishing_s"]].concat())
 }
 
 /// What is known of the machine, a property a line: `property,target,machine,matches`, the last `true`, `false` or,
@@ -82,6 +90,23 @@ mod tests {
         assert_eq!(samples, run.samples);
         assert!(samples.iter().any(|sample| sample.counters.page_faults.is_some()));
         assert_eq!(samples_csv(&[]), format!("{header}\n"), "no samples are no empty file");
+    }
+
+    #[test]
+    fn finishing_is_a_column_of_all_where_one_is_finished() {
+        let mut run = mock_run();
+        let last = run.samples.len() - 1;
+        run.samples[last].finishing_s = 0.25;
+        let text = samples_csv(&run.samples);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[0].ends_with(",outside_s,finishing_s"));
+        assert!(lines[1].ends_with(",0.0") && lines[1 + last].ends_with(",0.25"), "{text}");
+        let mut samples = rows::<BenchSample>(&text);
+        samples
+            .iter_mut()
+            .zip(rows::<Counters>(&text))
+            .for_each(|(sample, counters)| sample.counters = counters);
+        assert_eq!(samples, run.samples);
     }
 
     #[test]

@@ -61,8 +61,15 @@ pub fn import(
 
 fn sample(row: &BenchmarkRow, place: u32) -> BenchSample {
     let &BenchmarkRow { allocation_s, sampling_s, vertex_s, geometry_s, normals_s, .. } = row;
-    let stages =
-        StageSeconds { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s: 0.0, normals_s };
+    let stages = StageSeconds {
+        allocation_s,
+        sampling_s,
+        vertex_s,
+        geometry_s,
+        clustering_s: 0.0,
+        normals_s,
+        finishing_s: 0.0,
+    };
     stages.sample(row.id.clone(), [0, 0, place], None)
 }
 

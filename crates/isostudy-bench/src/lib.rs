@@ -72,4 +72,4 @@ pub use profile::{MEMORY_ALLOWANCE, ProfileRow, compare_profile, differences};
 pub use reference::Reference;
 pub use run::{Executor, Measurement, PeakBytes, check_journal, run, run_until};
 pub use stages::{StageSeconds, Timed};
-pub use worker::{Measured, Prepared, Reply, Request, serve};
+pub use worker::{Finish, Measured, Prepared, Reply, Request, serve};

@@ -1,4 +1,4 @@
-//! The six stages of an extraction, in seconds.
+//! The six stages of an extraction, and what finishes a mesh, in seconds.
 
 use isostudy_design::ConfigurationId;
 use isostudy_design::record::{BenchSample, Counters};
@@ -16,6 +16,8 @@ pub struct StageSeconds {
     pub geometry_s: f64,
     pub clustering_s: f64,
     pub normals_s: f64,
+    #[serde(default)]
+    pub finishing_s: f64,
 }
 
 /// One extraction: its stages, and what else was counted meanwhile.
@@ -37,7 +39,7 @@ impl From<&StageTimes> for StageSeconds {
     fn from(times: &StageTimes) -> Self {
         let [allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s] =
             six(times).map(|time| time.as_secs_f64());
-        Self { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s }
+        Self { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s, finishing_s: 0.0 }
     }
 }
 
@@ -50,7 +52,8 @@ impl StageSeconds {
         reference_s: Option<f64>,
     ) -> BenchSample {
         let total_s = self.total();
-        let Self { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s } = self;
+        let Self { allocation_s, sampling_s, vertex_s, geometry_s, clustering_s, normals_s, finishing_s } =
+            self;
         BenchSample {
             id,
             invocation,
@@ -62,13 +65,14 @@ impl StageSeconds {
             geometry_s,
             clustering_s,
             normals_s,
+            finishing_s,
             total_s,
             reference_s,
             counters: Counters::default(),
         }
     }
 
-    /// The sum of the six, added in their order.
+    /// The sum of all, added in their order.
     pub fn total(&self) -> f64 {
         self.allocation_s
             + self.sampling_s
@@ -76,5 +80,6 @@ impl StageSeconds {
             + self.geometry_s
             + self.clustering_s
             + self.normals_s
+            + self.finishing_s
     }
 }

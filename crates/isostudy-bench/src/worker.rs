@@ -12,6 +12,10 @@ use isostudy_field::StudyField;
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::io::{self, BufRead, Write};
+use std::time::{Duration, Instant};
+
+/// What is done to an extraction's mesh, or why that cannot be.
+pub type Finish<'f> = &'f dyn Fn(Extraction) -> Result<Extraction, String>;
 
 /// A configuration, ready to extract.
 #[derive(Clone, Copy)]
@@ -54,12 +58,33 @@ impl Prepared<'_> {
     /// # Errors
     /// Why it cannot be extracted.
     pub fn time(&self, threads: u32) -> Result<Timed, String> {
+        self.time_with(threads, None)
+    }
+
+    /// The same with what finishes the mesh, which is a stage of its own.
+    ///
+    /// # Errors
+    /// Why it cannot be extracted or finished.
+    pub fn time_with(&self, threads: u32, finish: Option<Finish<'_>>) -> Result<Timed, String> {
         let meter = Meter::begin();
-        let extraction = self.extract(&Execution { threads: threads as usize });
+        let made = self.made(&Execution { threads: threads as usize }, finish);
         let counters = meter.end();
-        let times = extraction.map(|extraction| black_box(extraction).times);
-        let timed = |times| Timed { stages: StageSeconds::from(&times), counters };
-        times.map(timed).map_err(|error| error.to_string())
+        let (Extraction { times, .. }, finishing) = black_box(made?);
+        let stages = StageSeconds { finishing_s: finishing.as_secs_f64(), ..StageSeconds::from(&times) };
+        Ok(Timed { stages, counters })
+    }
+
+    /// The finished mesh, and how long finishing took.
+    fn made(
+        &self,
+        execution: &Execution,
+        finish: Option<Finish<'_>>,
+    ) -> Result<(Extraction, Duration), String> {
+        let extraction = self.extract(execution).map_err(|error| error.to_string())?;
+        let Some(finish) = finish else { return Ok((extraction, Duration::ZERO)) };
+        let began = Instant::now();
+        let finished = finish(extraction)?;
+        Ok((finished, began.elapsed()))
     }
 
     /// What an extraction asks of the allocator, on one thread, which must be alone in the process; `None` where nobody counts
@@ -68,7 +93,15 @@ impl Prepared<'_> {
     /// # Errors
     /// Why it cannot be extracted.
     pub fn allocations(&self) -> Result<Option<AllocationCounts>, String> {
-        allocations(|execution| self.extract(execution))
+        self.allocations_with(None)
+    }
+
+    /// The same with what finishes the mesh, which counts in the total alone.
+    ///
+    /// # Errors
+    /// Why it cannot be extracted or finished.
+    pub fn allocations_with(&self, finish: Option<Finish<'_>>) -> Result<Option<AllocationCounts>, String> {
+        allocations(|execution| self.made(execution, finish).map(|(extraction, _)| extraction))
     }
 
     /// Extracts once and says how much memory that took.
@@ -76,8 +109,16 @@ impl Prepared<'_> {
     /// # Errors
     /// Why it cannot be extracted.
     pub fn memory(&self, threads: u32) -> Result<Option<PeakBytes>, String> {
+        self.memory_with(threads, None)
+    }
+
+    /// The same with what finishes the mesh.
+    ///
+    /// # Errors
+    /// Why it cannot be extracted or finished.
+    pub fn memory_with(&self, threads: u32, finish: Option<Finish<'_>>) -> Result<Option<PeakBytes>, String> {
         let before = resident_bytes();
-        self.time(threads)?;
+        self.time_with(threads, finish)?;
         Ok(before.zip(resident_bytes()).map(|([before_bytes, peak_before_bytes], [_, peak_bytes])| {
             PeakBytes { before_bytes, peak_before_bytes, peak_bytes }
         }))
@@ -233,7 +274,6 @@ mod tests {
     use isostudy_extract::{Arrangement, Clustering, Positions, StageTimes, Tetrahedra};
     use isostudy_field::Sphere;
     use isostudy_mesh::Bounds;
-    use std::time::Duration;
 
     fn sphere(method: Tetrahedra) -> Prepared<'static> {
         let bounds = Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) };
@@ -277,6 +317,7 @@ mod tests {
             geometry_s: 4.0,
             clustering_s: 50.0,
             normals_s: 600.0,
+            finishing_s: 0.0,
         };
         assert_eq!(stages, expected);
         assert!((stages.total() - times.total().as_secs_f64()).abs() < 1e-9);
@@ -295,6 +336,22 @@ mod tests {
             assert!(memory.before_bytes > 0 && memory.peak_bytes >= memory.peak_before_bytes);
             assert!(memory.peak_before_bytes >= memory.before_bytes);
         }
+    }
+
+    #[test]
+    fn finishing_is_a_stage_of_its_own_and_in_the_total() {
+        let of = sphere(Tetrahedra::new(Arrangement::BodyCentred));
+        let wait = Duration::from_millis(20);
+        let slow = |extraction| {
+            std::thread::sleep(wait);
+            Ok(extraction)
+        };
+        let stages = of.time_with(1, Some(&slow)).unwrap().stages;
+        assert!(stages.finishing_s >= wait.as_secs_f64());
+        assert!(stages.total() >= stages.finishing_s + stages.geometry_s);
+        assert_eq!(of.time(1).unwrap().stages.finishing_s, 0.0);
+        let refused = of.time_with(1, Some(&|_| Err("no".into())));
+        assert_eq!(refused, Err("no".into()));
     }
 
     #[test]

@@ -397,12 +397,16 @@ impl BenchRun {
     pub const READ: RangeInclusive<u32> = 3..=Self::SCHEMA;
 }
 
+fn is_zero(seconds: &f64) -> bool {
+    *seconds == 0.0
+}
+
 /// Of runs from before it was recorded.
 fn one() -> u32 {
     1
 }
 
-/// One timed extraction. The six stages add up to the total.
+/// One timed extraction. The six stages and finishing add up to the total.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchSample {
     /// What was extracted.
@@ -426,6 +430,9 @@ pub struct BenchSample {
     pub clustering_s: f64,
     /// Seconds to compute vertex normals.
     pub normals_s: f64,
+    /// Seconds of the method's finishing steps; 0 where it has none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub finishing_s: f64,
     /// Their sum.
     pub total_s: f64,
     /// Seconds that a fixed piece of work, the same in every run, took just before: the machine's speed at the time.

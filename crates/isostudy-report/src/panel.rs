@@ -71,7 +71,7 @@ impl Panel {
             object: study.object(configuration).name.clone(),
             method: study.method(configuration.id.method).label.clone(),
             threads,
-            times: Stage::ALL.into_iter().filter_map(time).collect(),
+            times: Stage::parts_of(own.iter().copied()).into_iter().filter_map(time).collect(),
             mesh,
         }
     }

@@ -56,6 +56,7 @@ pub fn bench_of(study: &Study, rounds: u32) -> BenchRun {
                 geometry_s: g,
                 clustering_s: 0.0,
                 normals_s: n,
+                finishing_s: 0.0,
                 total_s: a + s + v + g + n,
                 reference_s: None,
                 counters: Counters::default(),

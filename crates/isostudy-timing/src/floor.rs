@@ -54,7 +54,7 @@ impl NoiseFloor {
         let aa = if run.aa_samples.is_empty() {
             BTreeMap::new()
         } else {
-            let stages = Stage::ALL.into_iter().chain([Stage::GeometryAsPublished]);
+            let stages = Stage::parts_of(&run.samples).into_iter().chain([Stage::GeometryAsPublished]);
             stages.map(|stage| (stage.label(), floors(run, stage))).collect()
         };
         Self { aa, load: -(1.0 - busy_share(&run.load).min(0.999)).ln() }

@@ -120,6 +120,7 @@ pub(super) fn sample(
         geometry_s: 0.0,
         clustering_s: 0.0,
         normals_s: 0.0,
+        finishing_s: 0.0,
         total_s,
         reference_s: Some(reference_s),
         counters: Counters::default(),

@@ -20,6 +20,8 @@ pub struct StageTimes {
     pub clustering_s: f64,
     /// Normals of vertices.
     pub normals_s: f64,
+    /// The method's finishing steps; 0 where it has none.
+    pub finishing_s: f64,
     /// Median of the samples' totals without normals.
     pub median_without_normals_s: f64,
     /// Whether the stages were told apart, see [`BenchSample::has_stages`].
@@ -58,14 +60,15 @@ impl StageTimes {
             geometry_s: mean(|s| s.geometry_s + s.clustering_s),
             clustering_s: mean(|s| s.clustering_s),
             normals_s: mean(|s| s.normals_s),
+            finishing_s: mean(|s| s.finishing_s),
             median_without_normals_s: median,
             has_stages: samples.iter().any(|sample| sample.has_stages()),
         })
     }
 
-    /// The published total: the first four stages.
+    /// The published total, the first four stages, and what finishes the mesh.
     pub fn total_without_normals_s(&self) -> f64 {
-        self.allocation_s + self.sampling_s + self.vertex_s + self.geometry_s
+        self.allocation_s + self.sampling_s + self.vertex_s + self.geometry_s + self.finishing_s
     }
 }
 

@@ -71,7 +71,7 @@ pub fn statements(run: &BenchRun) -> Statements {
     let mut medians = Vec::new();
     let (mut found, mut effects) = (Vec::new(), Vec::new());
     for (id, samples) in by_configuration(run) {
-        for stage in Stage::ALL {
+        for stage in Stage::parts_of(samples.iter().copied()) {
             let seconds = median(values(&samples, stage), LEVEL).expect("the configuration has samples");
             medians.push(StageMedian { id: id.clone(), stage, samples: samples.len(), seconds });
         }

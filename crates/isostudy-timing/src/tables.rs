@@ -62,7 +62,16 @@ fn medians(run: &BenchRun, statements: &Statements) -> Table {
         })
         .quantity("total_low_ms", "from", "ms", |id| end(id, |i| i.low))
         .quantity("total_high_ms", "to", "ms", |id| end(id, |i| i.high));
-    let mut table = with_stages(columns, |id, stage| of(id, Stage::ALL[stage]).seconds.median)
+    let mut columns = with_stages(columns, |id, stage| of(id, Stage::ALL[stage]).seconds.median);
+    let finishing = |id: &ConfigurationId| {
+        statements.medians.iter().find(|median| median.id == *id && median.stage == Stage::Finishing)
+    };
+    if statements.medians.iter().any(|median| median.stage == Stage::Finishing) {
+        columns = columns.quantity("finishing_ms", "Finishing", "ms", |id| {
+            Cell::number(finishing(id).map(|median| MS * median.seconds.median), 3)
+        });
+    }
+    let mut table = columns
         .quantity("peak_mib", "Peak memory, {}", "MiB", |id| memory(id, |memory| Some(memory.peak_bytes)))
         // Below what making the field had taken before, extraction's own peak is not seen.
         .quantity("extraction_mib", "of it extraction", "MiB", |id| memory(id, PeakMemory::of_extraction))

@@ -1,6 +1,8 @@
 //! What a mesh costs chunk by chunk, as a game extracts it, and whether its chunks fit.
 
+use crate::finishing;
 use crate::prepare::Prepared;
+use crate::terminal::tell_once;
 use anyhow::{Context, Result};
 use glam::Vec3;
 use isostudy_design::record::ChunkTimes;
@@ -9,6 +11,8 @@ use isostudy_extract::{
     weld_chunks,
 };
 use isostudy_field::FieldCache;
+use isostudy_finish::{Extent, Step};
+use isostudy_mesh::TriangleMesh;
 use std::time::Instant;
 
 /// How far an edit reaches from a point of the surface, in cube edges: a ball of three, and two more in which its distance counts.
@@ -19,19 +23,25 @@ const EDIT_ROUNDS: usize = 3;
 
 /// Times every chunk of so many cells a side that has triangles, round by round, then edits: the chunks round a point of the surface,
 /// extracted again. The points are vertices of marching cubes whatever the method, so that all are asked the same. All on the calling
-/// thread. `None` for what makes no chunks.
+/// thread. `None` for what makes no chunks, and where a finishing step needs the whole mesh, which is said. What finishes a chunk leaves
+/// its borders as they are, and is in its times.
 ///
 /// # Errors
 /// If the chunks cannot be extracted, or do not fit together.
 pub(crate) fn chunk_times(prepared: &Prepared<'_>, cells: u32, rounds: u32) -> Result<Option<ChunkTimes>> {
     let Some(of) = prepared.extractor() else { return Ok(None) };
+    if !goes_in_chunks(prepared) {
+        return Ok(None);
+    }
     let mut kept = FieldCache::default();
     let field = of.field.prepared(&mut kept).unwrap_or(of.field);
-    let Some(mut work) = Chunks::begin(&of, Source::Study(field), cells)? else { return Ok(None) };
+    let Some(mut work) = Chunks::begin(&of, &prepared.finish, Source::Study(field), cells)? else {
+        return Ok(None);
+    };
     let chunk_s = work.each(rounds)?;
     let whole = of.extract(&Execution { threads: 1 })?.mesh;
     let (edit_chunks, edit_s) = work.edits(&places(&of)?)?;
-    let welded = weld_chunks(&work.chunks).with_context(|| format!("{}: its chunks", prepared.id))?;
+    let welded = work.welded().with_context(|| format!("{}: its chunks", prepared.id))?;
     let [open, of_whole] =
         [&welded, &whole].map(|mesh| isostudy_mesh::topology::topology(mesh).boundary_edges as i64);
     Ok(Some(ChunkTimes {
@@ -47,8 +57,20 @@ pub(crate) fn chunk_times(prepared: &Prepared<'_>, cells: u32, rounds: u32) -> R
     }))
 }
 
+/// Whether a configuration's finishing steps can be applied to chunks; it is said why not.
+pub(crate) fn goes_in_chunks(prepared: &Prepared<'_>) -> bool {
+    let why = finishing::why_not_in_chunks(&prepared.finish);
+    if let Some(why) = &why {
+        tell_once(&format!("{}: no times of chunks: {why}", prepared.id));
+    }
+    why.is_none()
+}
+
 /// The chunks of a configuration, extracted once, to be timed.
 pub(crate) struct Chunks<'a> {
+    finish: &'a [Step],
+    /// The chunks after their finishing steps; none where there are no steps.
+    finished: Vec<TriangleMesh>,
     extractor: ChunkExtractor,
     source: Source<'a>,
     spacing: f32,
@@ -65,6 +87,7 @@ impl<'a> Chunks<'a> {
     /// If a chunk cannot be extracted.
     pub(crate) fn begin(
         of: &isostudy_bench::Prepared<'_>,
+        finish: &'a [Step],
         source: Source<'a>,
         cells: u32,
     ) -> Result<Option<Self>> {
@@ -79,7 +102,10 @@ impl<'a> Chunks<'a> {
         let boxes: Vec<CellBox> = extractor.grid(cells).collect();
         let chunks = boxes.iter().map(|_| Chunk::default()).collect();
         let spacing = of.grid.spacing;
-        let mut work = Self { extractor, source, spacing, boxes, chunks, timed: Vec::new() };
+        let finished =
+            if finish.is_empty() { Vec::new() } else { vec![TriangleMesh::default(); boxes.len()] };
+        let mut work =
+            Self { finish, finished, extractor, source, spacing, boxes, chunks, timed: Vec::new() };
         for i in 0..work.boxes.len() {
             work.again(i)?;
         }
@@ -93,7 +119,27 @@ impl<'a> Chunks<'a> {
     fn again(&mut self, i: usize) -> Result<f64> {
         let start = Instant::now();
         self.extractor.extract_into(self.source, self.boxes[i], Control::default(), &mut self.chunks[i])?;
+        if !self.finish.is_empty() {
+            let Chunk { positions, triangles, .. } = &self.chunks[i];
+            let positions = positions.iter().copied().map(Vec3::from).collect();
+            let mesh = TriangleMesh { positions, normals: Vec::new(), triangles: triangles.clone() };
+            self.finished[i] = finishing::finish(mesh, self.finish, Extent::Chunk)?.mesh;
+        }
         Ok(start.elapsed().as_secs_f64())
+    }
+
+    /// All chunks as one mesh: by the keys of vertices, or after finishing steps by their places, which do not move at borders.
+    fn welded(&self) -> Result<TriangleMesh> {
+        if self.finish.is_empty() {
+            return Ok(weld_chunks(&self.chunks)?);
+        }
+        let mut all = TriangleMesh::default();
+        for mesh in &self.finished {
+            let first = all.positions.len() as u32;
+            all.positions.extend(&mesh.positions);
+            all.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| first + v)));
+        }
+        Ok(isostudy_mesh::weld(&all))
     }
 
     /// Seconds for each chunk that is timed, round by round.

@@ -1,6 +1,6 @@
 //! Files that are named to be read, each through `isostudy_foreign`, up to a limit.
 
-use crate::recipe::recipe;
+use crate::recipe::{finish, recipe};
 use anyhow::{Context, Result, bail};
 use isostudy_design::Study;
 use isostudy_design::record::Purpose;
@@ -62,6 +62,7 @@ pub(crate) fn study(path: &Path) -> Result<Study> {
     let study = Study::load(path)?;
     for method in &study.methods {
         recipe(&study, method.id, Purpose::Benchmark)?;
+        finish(&study, method.id)?;
     }
     Ok(study)
 }

@@ -2,12 +2,14 @@
 
 use crate::prepare::Prepared;
 use crate::recipe::Recipe;
-use crate::{mesh_file, records, seeds};
+use crate::terminal::tell_once;
+use crate::{finishing, mesh_file, records, seeds};
 use anyhow::{Context, Result, bail};
 use glam::Vec3;
 use isostudy_design::record::{Counts, MadeBy};
 use isostudy_extract::{Execution, Extractor};
 use isostudy_field::{Counted, FieldCache};
+use isostudy_finish::Extent;
 use isostudy_mesh::TriangleMesh;
 use isostudy_program::{Program, ProgramError, Ready, Request, Samples, Worker};
 use rayon::prelude::*;
@@ -50,11 +52,26 @@ impl Prepared<'_> {
         }
     }
 
-    /// The mesh, which may have no triangles if it is an extractor's or a file's.
+    /// The mesh, which may have no triangles if it is an extractor's or a file's. Where a finishing step could not do what was asked,
+    /// it is said.
     ///
     /// # Errors
-    /// As [`make`](Self::make), but for that.
+    /// As [`make`](Self::make), but for that; if a finishing step cannot be applied.
     pub(crate) fn make_any(&self, extractor: &mut Extractor, execution: &Execution) -> Result<Made> {
+        let mut made = self.make_unfinished(extractor, execution)?;
+        if self.finish.is_empty() {
+            return Ok(made);
+        }
+        let finished = finishing::finish(made.mesh, &self.finish, Extent::Whole);
+        let finished = finished.with_context(|| self.id.to_string())?;
+        finished.stopped.iter().for_each(|stopped| tell_once(&format!("{}: finish: {stopped}", self.id)));
+        made.counts = records::with_mesh(made.counts, &finished.mesh);
+        made.mesh = finished.mesh;
+        Ok(made)
+    }
+
+    /// The same before its finishing steps.
+    fn make_unfinished(&self, extractor: &mut Extractor, execution: &Execution) -> Result<Made> {
         Ok(match &self.recipe {
             Recipe::Extractor(_) => {
                 let mut kept = FieldCache::default();

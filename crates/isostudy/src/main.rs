@@ -14,6 +14,7 @@ mod consent;
 mod error_colours;
 mod fields;
 mod file_samples;
+mod finishing;
 mod grid_file;
 mod help;
 mod input;

@@ -1,9 +1,13 @@
 //! The configurations of a study in front of the clock: extractors of ours, and programs that stay started.
 
+use crate::finishing;
 use crate::prepare::Prepared;
 use crate::recipe::Recipe;
-use isostudy_bench::{AllocationCounts, Asked, Measured, PeakBytes, StageSeconds, Timed};
+use isostudy_bench::{AllocationCounts, Asked, Finish, Measured, PeakBytes, StageSeconds, Timed};
 use isostudy_design::record::Counters;
+use isostudy_extract::Extraction;
+use isostudy_finish::Extent;
+use isostudy_mesh::TriangleMesh;
 use isostudy_program::{Answer, Program, Samples, Worker, write_samples};
 use std::collections::HashMap;
 use std::hint::black_box;
@@ -22,6 +26,8 @@ pub(crate) struct Clock<'a> {
 /// A program that is started, and the samples that it is given.
 struct Running {
     worker: Worker,
+    /// The mesh that it makes, where there are finishing steps to be timed.
+    mesh: Option<TriangleMesh>,
     samples: PathBuf,
     cells: [u32; 3],
 }
@@ -38,6 +44,23 @@ impl<'a> Clock<'a> {
         running.worker.extract(&request).map_err(|error| format!("{}: {error}", prepared.id))
     }
 
+    /// The mesh that a program makes, asked for once and not timed; an empty one if it sends none.
+    fn mesh(
+        &mut self,
+        number: usize,
+        prepared: &Prepared<'_>,
+        program: &Program,
+    ) -> Result<TriangleMesh, String> {
+        let running = self.started(number, prepared, program)?;
+        if running.mesh.is_none() {
+            let path = running.worker.folder().join("mesh.ply");
+            let request = prepared.request(Samples::File(&running.samples), running.cells, Some(&path));
+            let answer = running.worker.extract(&request);
+            running.mesh = answer.map_err(|error| format!("{}: {error}", prepared.id))?.mesh;
+        }
+        Ok(running.mesh.clone().unwrap_or_default())
+    }
+
     fn started(
         &mut self,
         number: usize,
@@ -50,7 +73,7 @@ impl<'a> Clock<'a> {
             let worker = Worker::start(program).map_err(|error| text(&error))?;
             let samples = worker.folder().join("samples.f32");
             write_samples(&samples, &prepared.samples(cells)).map_err(|error| text(&error))?;
-            self.running.insert(number, Running { worker, samples, cells });
+            self.running.insert(number, Running { worker, mesh: None, samples, cells });
         }
         self.running.get_mut(&number).ok_or_else(|| text(&"not started"))
     }
@@ -65,7 +88,8 @@ impl Measured for Clock<'_> {
                 let answer = self.ask(number, &prepared, program)?;
                 // A program says how long it took, not what each stage did: it is all in one.
                 let geometry_s = answer.extraction_s.unwrap_or(answer.wall.as_secs_f64());
-                let stages = StageSeconds { sampling_s, geometry_s, ..StageSeconds::default() };
+                let finishing_s = finishing_s(&prepared, || self.mesh(number, &prepared, program))?;
+                let stages = StageSeconds { sampling_s, geometry_s, finishing_s, ..StageSeconds::default() };
                 let counters = Counters { outside_s: Some(answer.wall.as_secs_f64()), ..Counters::default() };
                 Ok(Timed { stages, counters })
             }
@@ -74,12 +98,13 @@ impl Measured for Clock<'_> {
                 let surface =
                     prepared.on_own_cells().map_err(|error| format!("{}: {error:#}", prepared.id))?;
                 let geometry_s = began.elapsed().as_secs_f64();
-                black_box(surface);
+                let finishing_s = finishing_s(&prepared, || Ok(surface.mesh))?;
                 // Nothing is sampled: the values are the grid's.
-                let stages = StageSeconds { geometry_s, ..StageSeconds::default() };
+                let stages = StageSeconds { geometry_s, finishing_s, ..StageSeconds::default() };
                 Ok(Timed { stages, counters: Counters::default() })
             }
-            _ => extractor(&prepared)?.time(threads),
+            _ => extractor(&prepared)?
+                .time_with(threads, steps(&prepared, &|of| finished_extraction(&prepared, of))),
         }
     }
 
@@ -98,7 +123,8 @@ impl Measured for Clock<'_> {
                 }))
             }
             Recipe::GridCells => Ok(None),
-            _ => extractor(&prepared)?.memory(threads),
+            _ => extractor(&prepared)?
+                .memory_with(threads, steps(&prepared, &|of| finished_extraction(&prepared, of))),
         }
     }
 
@@ -107,7 +133,8 @@ impl Measured for Clock<'_> {
         let prepared = (self.prepare)(number)?;
         match &prepared.recipe {
             Recipe::Program(_) | Recipe::GridCells => Ok(None),
-            _ => extractor(&prepared)?.allocations(),
+            _ => extractor(&prepared)?
+                .allocations_with(steps(&prepared, &|of| finished_extraction(&prepared, of))),
         }
     }
 }
@@ -129,6 +156,36 @@ fn sampling(prepared: &Prepared<'_>, threads: u32) -> Result<f64, String> {
         black_box(prepared.samples(cells));
         Ok(began.elapsed().as_secs_f64())
     })
+}
+
+/// What finishes a mesh; `None` where nothing does.
+fn steps<'f>(prepared: &Prepared<'_>, finish: Finish<'f>) -> Option<Finish<'f>> {
+    (!prepared.finish.is_empty()).then_some(finish)
+}
+
+fn finished_extraction(prepared: &Prepared<'_>, of: Extraction) -> Result<Extraction, String> {
+    Ok(Extraction { mesh: finished(prepared, of.mesh)?, ..of })
+}
+
+/// Seconds that the finishing steps take, of a mesh that is asked for where there are any.
+fn finishing_s(
+    prepared: &Prepared<'_>,
+    mesh: impl FnOnce() -> Result<TriangleMesh, String>,
+) -> Result<f64, String> {
+    if prepared.finish.is_empty() {
+        return Ok(0.0);
+    }
+    let mesh = mesh()?;
+    let began = Instant::now();
+    black_box(finished(prepared, mesh)?);
+    Ok(began.elapsed().as_secs_f64())
+}
+
+/// The mesh after its finishing steps. Normals are timed where they are made, with the mesh that is extracted, and not once more.
+fn finished(prepared: &Prepared<'_>, mut mesh: TriangleMesh) -> Result<TriangleMesh, String> {
+    mesh.normals = Vec::new();
+    let finished = finishing::finish(mesh, &prepared.finish, Extent::Whole);
+    finished.map(|of| of.mesh).map_err(|error| format!("{}: {error:#}", prepared.id))
 }
 
 fn extractor<'a>(prepared: &Prepared<'a>) -> Result<isostudy_bench::Prepared<'a>, String> {

@@ -11,6 +11,7 @@ use isostudy_design::record::Purpose;
 use isostudy_design::{Configuration, ConfigurationId, MethodId, Study};
 use isostudy_extract::{Arrangement, BoxGrid, Execution, Method, MethodError};
 use isostudy_field::StudyField;
+use isostudy_finish::Step;
 use isostudy_grid::{Grid, Surface};
 use isostudy_mesh::Bounds;
 use serde::{Deserialize, Serialize};
@@ -62,6 +63,8 @@ pub(crate) struct Prepared<'a> {
     pub(crate) own_cells: Option<&'a Grid>,
     /// How the mesh comes to be.
     pub(crate) recipe: Recipe,
+    /// What is done to it afterwards.
+    pub(crate) finish: Vec<Step>,
 }
 
 /// Finds what a configuration needs.
@@ -88,6 +91,7 @@ pub(crate) fn prepare<'a>(
         grid: grid(object, spacing.unwrap_or_else(|| wanted.spacing(object))),
         own_cells: made.cells.as_deref(),
         recipe: recipe(study, configuration.id.method, wanted.purpose())?,
+        finish: recipe::finish(study, configuration.id.method)?,
     })
 }
 

@@ -1,5 +1,6 @@
 //! What a study's recipes ask for: an extractor of ours, a program, or meshes that are there.
 
+use crate::finishing;
 use crate::study_key::place;
 use anyhow::{Context, Result, bail};
 use isostudy_design::config::{FieldSection, ObjectSection, Quantity};
@@ -7,6 +8,7 @@ use isostudy_design::record::Purpose;
 use isostudy_design::wording::{did_you_mean, plainly};
 use isostudy_design::{MethodId, Study};
 use isostudy_extract::{Method, Positions, Tetrahedra, kinds, presets};
+use isostudy_finish::Step;
 use isostudy_program::Program;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -108,6 +110,21 @@ pub(crate) fn recipe(study: &Study, id: MethodId, purpose: Purpose) -> Result<Re
     read(study, id, purpose).with_context(|| key(study, id))
 }
 
+/// The finishing steps of a study's method, in their order; none where its recipe has none.
+///
+/// # Errors
+/// The first that is none, naming file, key and what is allowed.
+pub(crate) fn finish(study: &Study, id: MethodId) -> Result<Vec<Step>> {
+    let Some(value) = study.method(id).recipe.settings.get(finishing::KEY) else { return Ok(Vec::new()) };
+    finishing::steps(value.clone()).map_err(|(at, error)| {
+        let key = match study.file.methods.iter().position(|section| section.id == id) {
+            Some(i) => place(study, &format!("methods[{i}].recipe.{}[{at}]", finishing::KEY)),
+            None => place(study, "extraction"),
+        };
+        anyhow::Error::msg(format!("{key}: {error}"))
+    })
+}
+
 /// Where a method's recipe stands.
 pub(crate) fn key(study: &Study, id: MethodId) -> String {
     match study.file.methods.iter().position(|section| section.id == id) {
@@ -118,7 +135,9 @@ pub(crate) fn key(study: &Study, id: MethodId) -> String {
 
 fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
     let recipe = &study.method(id).recipe;
-    let keys = recipe.settings.clone();
+    let mut keys = recipe.settings.clone();
+    // Steps go with every kind.
+    keys.remove(finishing::KEY);
     match StudyKind::of(&recipe.kind) {
         Some(StudyKind::Program) => {
             let keys: ProgramKeys = keys_of(keys)?;
@@ -223,6 +242,7 @@ pub(crate) fn no_kind(kind: &str, in_study: bool) -> String {
 /// The first that is not, naming file, key and what is allowed.
 pub(crate) fn check(study: &Study) -> Result<()> {
     for method in &study.methods {
+        finish(study, method.id)?;
         match recipe(study, method.id, Purpose::Benchmark)? {
             Recipe::Extractor(_) | Recipe::GridCells => {}
             Recipe::Program(program) => program.check().with_context(|| key(study, method.id))?,

@@ -95,6 +95,12 @@ pub(crate) fn counts_of_mesh(mesh: &TriangleMesh, cells: Option<[u32; 3]>) -> Co
     }
 }
 
+/// With what a finished mesh has, in place of what was extracted.
+pub(crate) fn with_mesh(counts: Counts, mesh: &TriangleMesh) -> Counts {
+    let Counts { vertices, triangles, vertex_bytes, index_bytes, .. } = counts_of_mesh(mesh, None);
+    Counts { vertices, triangles, vertex_bytes, index_bytes, ..counts }
+}
+
 pub(crate) fn quality(q: &isostudy_mesh::quality::QualityReport) -> Quality {
     Quality {
         triangles: q.triangles,

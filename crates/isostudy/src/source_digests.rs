@@ -7,6 +7,7 @@ const RESPONSES: &str = env!("ISOSTUDY_SOURCES_RESPONSES");
 const FIELD: &str = env!("ISOSTUDY_SOURCES_FIELD");
 const FOREIGN: &str = env!("ISOSTUDY_SOURCES_FOREIGN");
 const EXTRACT: &str = env!("ISOSTUDY_SOURCES_EXTRACT");
+const FINISH: &str = env!("ISOSTUDY_SOURCES_FINISH");
 const TRILINEAR: &str = env!("ISOSTUDY_SOURCES_TRILINEAR");
 const EXPRESSION: &str = env!("ISOSTUDY_SOURCES_EXPRESSION");
 const VOLUME: &str = env!("ISOSTUDY_SOURCES_VOLUME");
@@ -26,13 +27,15 @@ const PAGE: &str = env!("ISOSTUDY_SOURCES_PAGE");
 const CLI: &str = env!("ISOSTUDY_SOURCES_CLI");
 
 /// What makes meshes.
-pub(crate) const MESHES: &[&str] =
-    &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, GRID, SCATTERED, CELLS, EXTRACT, TRILINEAR, PROGRAM, CLI];
+pub(crate) const MESHES: &[&str] = &[
+    MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, GRID, SCATTERED, CELLS, EXTRACT, FINISH, TRILINEAR, PROGRAM,
+    CLI,
+];
 /// What makes pictures of meshes.
 pub(crate) const PICTURES: &[&str] = &[MESH, RASTER, CLI];
 /// What makes timings.
 pub(crate) const TIMINGS: &[&str] =
-    &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, GRID, SCATTERED, CELLS, EXTRACT, PROGRAM, BENCH, CLI];
+    &[MESH, FIELD, FOREIGN, EXPRESSION, VOLUME, GRID, SCATTERED, CELLS, EXTRACT, FINISH, PROGRAM, BENCH, CLI];
 /// What makes tables, figures and the report.
 pub(crate) const TABLES: &[&str] =
     &[DESIGN, RESPONSES, STATISTICS, TABLE, TIMING, INFERENCE, REPORT, PAPER, CLI, PAGE];

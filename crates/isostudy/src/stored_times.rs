@@ -1,14 +1,18 @@
 //! What a mesh costs where its object's samples are stored, as a game keeps voxels: from the samples to the mesh.
 
-use crate::chunk_times::{Chunks, places};
+use crate::chunk_times::{Chunks, goes_in_chunks, places};
+use crate::finishing;
 use crate::prepare::Prepared;
 use crate::recipe::Recipe;
 use anyhow::{Context, Result};
 use isostudy_design::record::StoredTimes;
 use isostudy_extract::{Arrangement, Execution, Extraction, Extractor, Source};
 use isostudy_field::{Beyond, VolumeField};
+use isostudy_finish::Extent;
+use isostudy_mesh::TriangleMesh;
 use isostudy_program::{Program, Samples, Worker, write_samples};
 use std::hint::black_box;
+use std::time::Instant;
 
 /// Times a configuration from the samples at the corners of its object's cubes: the whole mesh, then chunks of so many cells a side,
 /// 0 for none, and edits as [`chunk_times`](crate::chunk_times::chunk_times) has them. Each number is of one extraction on one thread, after one that is not counted.
@@ -39,8 +43,8 @@ fn of_extractor(prepared: &Prepared<'_>, cells: u32, rounds: u32) -> Result<Opti
     let whole = || -> Result<f64> {
         let execution = Execution { threads: 1 };
         let made = of.method.extract(&mut Extractor::new(), source, &of.grid, of.isovalue, &execution)?;
-        let Extraction { times, .. } = black_box(made);
-        Ok((times.total() - times.normals).as_secs_f64())
+        let Extraction { times, mesh, .. } = black_box(made);
+        Ok((times.total() - times.normals).as_secs_f64() + finishing_s(prepared, mesh)?)
     };
     whole()?;
     let whole_s = (0..rounds).map(|_| whole()).collect::<Result<_>>()?;
@@ -52,7 +56,11 @@ fn of_extractor(prepared: &Prepared<'_>, cells: u32, rounds: u32) -> Result<Opti
         chunk_s: vec![],
         edit_s: vec![],
     };
-    let chunks = if cells > 0 { Chunks::begin(&of, source, cells)? } else { None };
+    let chunks = if cells > 0 && goes_in_chunks(prepared) {
+        Chunks::begin(&of, &prepared.finish, source, cells)?
+    } else {
+        None
+    };
     if let Some(mut work) = chunks {
         times.timed = work.timed.len() as u64;
         times.chunk_s = work.each(rounds)?;
@@ -61,16 +69,30 @@ fn of_extractor(prepared: &Prepared<'_>, cells: u32, rounds: u32) -> Result<Opti
     Ok(Some(times))
 }
 
+/// Seconds that the finishing steps take; 0 where there are none.
+fn finishing_s(prepared: &Prepared<'_>, mut mesh: TriangleMesh) -> Result<f64> {
+    if prepared.finish.is_empty() {
+        return Ok(0.0);
+    }
+    mesh.normals = Vec::new();
+    let began = Instant::now();
+    black_box(finishing::finish(mesh, &prepared.finish, Extent::Whole)?);
+    Ok(began.elapsed().as_secs_f64())
+}
+
 /// A program is given all samples in a file; its own word says how long it took from there.
 fn of_program(prepared: &Prepared<'_>, program: &Program, rounds: u32) -> Result<StoredTimes> {
     let cells = prepared.cells()?;
     let mut worker = Worker::start(program).with_context(|| prepared.id.to_string())?;
-    let samples = worker.folder().join("samples.f32");
+    let [samples, mesh] = ["samples.f32", "mesh.ply"].map(|name| worker.folder().join(name));
     write_samples(&samples, &prepared.samples(cells))?;
     let mut whole = || -> Result<f64> {
-        let request = prepared.request(Samples::File(&samples), cells, None);
+        // The mesh is asked for only where there is something to be done with it.
+        let path = Some(&*mesh).filter(|_| !prepared.finish.is_empty());
+        let request = prepared.request(Samples::File(&samples), cells, path.map(AsRef::as_ref));
         let answer = worker.extract(&request).with_context(|| prepared.id.to_string())?;
-        Ok(answer.extraction_s.unwrap_or(answer.wall.as_secs_f64()))
+        let finishing = answer.mesh.map_or(Ok(0.0), |mesh| finishing_s(prepared, mesh))?;
+        Ok(answer.extraction_s.unwrap_or(answer.wall.as_secs_f64()) + finishing)
     };
     whole()?;
     let whole_s = (0..rounds).map(|_| whole()).collect::<Result<_>>()?;

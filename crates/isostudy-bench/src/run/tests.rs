@@ -49,6 +49,7 @@ impl Executor for Mock {
             geometry_s: 0.3,
             clustering_s: 0.7,
             normals_s,
+            finishing_s: 0.0,
         };
         let counters = Counters { page_faults: Some(subject as u64), ..Counters::default() };
         Ok(Measurement { stages, reference_s: Some(0.001), counters })

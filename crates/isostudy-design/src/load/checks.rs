@@ -227,7 +227,9 @@ fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), C
         FieldSection::Formula { text, .. } => {
             c.text(&format!("{key}.text"), text, "must be a formula in x, y and z")
         }
-        FieldSection::Volume { file, .. } | FieldSection::Grid { file, .. } => c.text(&format!("{key}.file"), file, "must name a file"),
+        FieldSection::Volume { file, .. } | FieldSection::Grid { file, .. } => {
+            c.text(&format!("{key}.file"), file, "must name a file")
+        }
         FieldSection::Points { file, offset, smoothing, centres, .. } => {
             c.text(&format!("{key}.file"), file, "must name a file")?;
             if let Some(offset) = offset {

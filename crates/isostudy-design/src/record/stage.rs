@@ -19,7 +19,9 @@ pub enum Stage {
     Clustering,
     /// Computing vertex normals.
     Normals,
-    /// The sum of the six. The paper's total leaves the normals out.
+    /// What is done to the finished mesh. It is no stage of an extraction, and most methods have none.
+    Finishing,
+    /// The sum of the six and of finishing. The paper's total leaves the normals out.
     Total,
     /// Geometry and edge collapse together: the published geometry stage.
     GeometryAsPublished,
@@ -37,6 +39,15 @@ impl Stage {
         Self::Total,
     ];
 
+    /// The stages that samples have: [`ALL`](Self::ALL), with finishing before the total where some method is finished.
+    pub fn parts_of<'s>(samples: impl IntoIterator<Item = &'s BenchSample>) -> Vec<Self> {
+        let mut stages = Self::ALL.to_vec();
+        if samples.into_iter().any(|sample| sample.finishing_s > 0.0) {
+            stages.insert(stages.len() - 1, Self::Finishing);
+        }
+        stages
+    }
+
     /// The name used in tables and errors.
     pub fn label(self) -> &'static str {
         match self {
@@ -46,6 +57,7 @@ impl Stage {
             Self::Geometry => "geometry",
             Self::Clustering => "clustering",
             Self::Normals => "normals",
+            Self::Finishing => "finishing",
             Self::Total => "total",
             Self::GeometryAsPublished => "geometry and clustering",
         }
@@ -60,12 +72,13 @@ impl Stage {
             Self::Geometry => sample.geometry_s,
             Self::Clustering => sample.clustering_s,
             Self::Normals => sample.normals_s,
+            Self::Finishing => sample.finishing_s,
             Self::Total => sample.total_s,
             Self::GeometryAsPublished => sample.geometry_s + sample.clustering_s,
         }
     }
 
-    /// What is counted for this stage.
+    /// What is counted for this stage. What finishing asks for stands in the total alone.
     pub fn count(self, counts: &StageCounts) -> u64 {
         match self {
             Self::Allocation => counts.allocation,
@@ -74,6 +87,7 @@ impl Stage {
             Self::Geometry => counts.geometry,
             Self::Clustering => counts.clustering,
             Self::Normals => counts.normals,
+            Self::Finishing => 0,
             Self::Total => counts.total,
             Self::GeometryAsPublished => counts.geometry + counts.clustering,
         }

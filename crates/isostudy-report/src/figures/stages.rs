@@ -5,9 +5,9 @@ use super::draft::Unfinished;
 use super::legend::Swatch;
 use super::meshes::median_of;
 use super::sheet::Sheet;
-use super::style;
+use super::style::{self, Fill};
 use isostudy_design::ConfigurationId;
-use isostudy_design::record::BenchSample;
+use isostudy_design::record::{BenchRun, BenchSample};
 use isostudy_inference::inputs::Inputs;
 use isostudy_statistics::interval::{Interval, LEVEL};
 use isostudy_timing::stage_times::conditions;
@@ -24,8 +24,7 @@ pub(super) fn stage_times(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinishe
     if with_samples.is_empty() {
         return None;
     }
-    let mut legend: Vec<_> =
-        style::stages().into_iter().map(|(name, fill)| (Swatch::Area(fill), name.to_owned())).collect();
+    let mut legend: Vec<_> = fills(run).map(|(name, fill)| (Swatch::Area(fill), name.to_owned())).collect();
     legend.push((Swatch::Whisker, "95 % interval of the median".into()));
     let rows = sheet.in_rows(&with_samples).into_iter().flat_map(|block| {
         [true, false].map(|sampling| {
@@ -42,30 +41,37 @@ pub(super) fn stage_times(inputs: &Inputs<'_>, sheet: Sheet) -> Option<Unfinishe
     Some(Unfinished { name: "stage_times", caption, canvas })
 }
 
+/// The stages of a run; what finishes a mesh is one where some method is finished.
+fn fills(run: &BenchRun) -> impl Iterator<Item = (&'static str, Fill)> {
+    let is_finished = run.samples.iter().any(|sample| sample.finishing_s > 0.0);
+    style::stages().into_iter().chain(is_finished.then(style::finishing))
+}
+
 fn panel(inputs: &Inputs<'_>, object: usize, sampling: bool) -> BarPanel {
     let object = &inputs.study.file.objects[object];
     let bar = |method| {
         let id = ConfigurationId { object: object.id.clone(), method };
         let Some(run) = inputs.bench else { return Bar::default() };
-        let stage: [fn(&BenchSample) -> f64; 5] = [
+        let stage: [fn(&BenchSample) -> f64; 6] = [
             |s| s.allocation_s,
             |s| s.sampling_s,
             |s| s.vertex_s,
             |s| s.geometry_s + s.clustering_s,
             |s| s.normals_s,
+            |s| s.finishing_s,
         ];
         let whole = |s: &BenchSample| if sampling { s.total_s } else { s.total_s - s.sampling_s };
         let medians = stage.map(|stage| median_of(run, &id, stage).map_or(0.0, |of| of.median));
         let Some(total) = median_of(run, &id, whole) else { return Bar::default() };
         let shown = |place: &usize| sampling || *place != SAMPLING;
-        let sum: f64 = (0..stage.len()).filter(shown).map(|place| medians[place]).sum();
+        let fills: Vec<Fill> = fills(run).map(|(_, fill)| fill).collect();
+        let sum: f64 = (0..fills.len()).filter(shown).map(|place| medians[place]).sum();
         // Medians of parts do not add up to the median of the whole.
         let scale = if sum > 0.0 { 1e3 * total.median / sum } else { 0.0 };
-        let fills = style::stages();
         Bar {
-            segments: (0..stage.len())
+            segments: (0..fills.len())
                 .filter(shown)
-                .map(|place| (scale * medians[place], fills[place].1))
+                .map(|place| (scale * medians[place], fills[place]))
                 .collect(),
             interval: total.interval_at(LEVEL).map(|i| Interval { low: 1e3 * i.low, high: 1e3 * i.high }),
             ..Bar::default()

@@ -233,6 +233,11 @@ pub(super) fn stages() -> [(&'static str, Fill); 5] {
     ]
 }
 
+/// The fill of what finishes a mesh, after the stages.
+pub(super) fn finishing() -> (&'static str, Fill) {
+    ("finishing", Fill::plain(RGBColor(0x00, 0x9e, 0x73)).striped())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -256,7 +261,8 @@ mod tests {
         let dark = palette::on_dark;
         assert!(contrast(dark(BLACK), palette::DARK_PAPER) >= 4.5);
         // Areas, marks and lines: the guidelines ask for 3.
-        let stages = stages().map(|(_, fill)| fill.colour);
+        let stages: Vec<Colour> =
+            stages().into_iter().chain([finishing()]).map(|(_, fill)| fill.colour).collect();
         let objects: Vec<Colour> = (0..5).map(object_colour).collect();
         for colour in [&HUES[..], &stages, &objects, &[LEFT, NONE, RIGHT, IDEAL]].concat() {
             let found = contrast(dark(colour), palette::DARK_PAPER);

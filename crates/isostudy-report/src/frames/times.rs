@@ -18,6 +18,10 @@ pub(crate) fn times(run: &BenchRun) -> LongFrame {
     STAGES.iter().for_each(|(name, of, everybody)| {
         rows.number(name, |(_, sample)| (*everybody || sample.has_stages()).then(|| of(sample)));
     });
+    let is_finished = |sample: &BenchSample| sample.finishing_s > 0.0;
+    if run.samples.iter().chain(&run.aa_samples).any(is_finished) {
+        rows.number("finishing_s", |(_, sample)| Some(sample.finishing_s));
+    }
     rows.number("reference_s", |(_, sample)| sample.reference_s);
     LongFrame { name: "times", frame: rows.frame(), texts: Vec::new() }
 }

@@ -3,7 +3,7 @@
 use crate::budgets::budgets;
 use crate::tables::design::{method_columns, with_factors};
 use crate::wants::busy;
-use isostudy_design::record::{MeshRecord, PeakMemory, Purpose};
+use isostudy_design::record::{BenchRun, MeshRecord, PeakMemory, Purpose};
 use isostudy_inference::inputs::Inputs;
 use isostudy_inference::mesh_set::{MeshSet, discard_fraction, known};
 use isostudy_inference::published_ratio;
@@ -111,6 +111,13 @@ fn with_times(columns: Columns<Row<'_>>) -> Columns<Row<'_>> {
         .quantity("normals_s", "Normals, {}", "s", |of| told_apart(of, |t| t.normals_s))
 }
 
+/// What finishing takes, where some method is finished; it is in the totals.
+fn with_finishing(columns: Columns<Row<'_>>) -> Columns<Row<'_>> {
+    columns.quantity("finishing_s", "Finishing, {}", "s", |of| {
+        Cell::number(of.times.as_ref().map(|times| times.finishing_s).filter(|seconds| *seconds > 0.0), 6)
+    })
+}
+
 /// Stands for the columns that tell the method.
 const FACTORS: &str = "factors";
 
@@ -186,6 +193,9 @@ pub(super) fn benchmark(inputs: &Inputs<'_>) -> Option<Table> {
     let blocks = BLOCKS.iter().filter(|(name, _)| inputs.bench.is_some() || *name != "Times");
     let parts = blocks.map(|(name, columns)| {
         let mut columns = spelt(columns);
+        if *name == "Times" && inputs.bench.is_some_and(is_finished) {
+            columns.push("finishing_s");
+        }
         if study.file.benchmark.memory && *name == "Memory" {
             columns.push("extraction_memory_bytes");
         }
@@ -193,6 +203,11 @@ pub(super) fn benchmark(inputs: &Inputs<'_>) -> Option<Table> {
     });
     table.parts = parts.collect();
     Some(table)
+}
+
+/// Whether some method of a run is finished.
+fn is_finished(run: &BenchRun) -> bool {
+    run.samples.iter().any(|sample| sample.finishing_s > 0.0)
 }
 
 /// The rows of the objects that `holds` picks, as one wide table.
@@ -221,6 +236,7 @@ pub fn of_objects(inputs: &Inputs<'_>, holds: impl Fn(usize) -> bool) -> Option<
     let columns = with_factors(columns, study, method_columns(study), |of| of.mesh.id.method);
     let mut table = with_counts(columns)
         .columns_if(inputs.bench.is_some(), with_times)
+        .columns_if(inputs.bench.is_some_and(is_finished), with_finishing)
         .columns_if(study.file.benchmark.memory, |all| {
             all.quantity("extraction_memory_bytes", "Memory beside the field, {}", "bytes", |of| {
                 maybe(of.peak_bytes)

@@ -1,6 +1,7 @@
 //! `isostudy extract`: the meshes of a study, or the surface of a formula, or of a volume, a mesh, points or soup in a file.
 
 mod chosen_method;
+mod finished;
 mod grid;
 mod isovalues;
 mod labels;
@@ -17,12 +18,13 @@ use crate::place::place;
 use crate::source::Source;
 use crate::store::{write_whole, write_whole_by};
 use crate::terminal::{counted, grouped, say};
-use crate::{input, mesh_file, records, seeds};
+use crate::{finishing, input, mesh_file, records, seeds};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args};
 use isostudy_design::record::Counts;
 use isostudy_extract::{Arrangement, Clustering, Execution, Extraction, Extractor, Method, Tetrahedra};
 use isostudy_field::{Counted, FieldCache, StudyField};
+use isostudy_finish::Step;
 use isostudy_mesh::{MeshFormat, TriangleMesh, corner_normals};
 use isostudy_raster::{Camera, Look, Shading, Viewport};
 use isovalues::Isovalues;
@@ -42,6 +44,7 @@ Examples:
   isostudy extract --labels organs.seg.nrrd --only 2,5 -o organs.glb
   isostudy extract --volume head.nrrd --isovalues 100:1500:15 -o 'head-{isovalue}.ply' --method mc
   isostudy extract --field 'max(abs(x), max(abs(y), abs(z))) - 1' --bounds=-2,-2,-2,2,2,2 -o box.glb --method dc-in-cell --crease-deg 40
+  isostudy extract --volume head.nrrd --isovalue 300.5 -o few.glb --finish decimate:ratio=0.1
   isostudy extract --mesh scan.stl --cells 200 -o even.obj --picture even.png --method bi-relaxed
   isostudy extract --points scan.ply --cells 80 -o surface.glb
   isostudy extract configs/paper.toml --only ss_bi")]
@@ -79,6 +82,10 @@ pub(crate) struct Arguments {
     /// A method as a study file has it instead: '{ kind = "tetrahedra", arrangement = "body-centred", placement = "relaxed" }'
     #[arg(long, value_name = "TOML", value_parser = chosen_method::recipe, conflicts_with_all = ["study", "arrangement", "clustering"])]
     recipe: Option<Method>,
+    /// What is done to the mesh afterwards, in the order given: merge-by-distance, coplanar, decimate or re-tile with its settings, such
+    /// as decimate:ratio=0.5 or re-tile:points=5000,by=curvature
+    #[arg(long, value_name = "STEP:KEY=VALUE,...", value_parser = finishing::step_of_text, conflicts_with_all = ["study", "labels", "isovalues"])]
+    finish: Vec<Step>,
     /// Mesh to write, .obj, .ply, .stl or .glb; of a study, the folder for results [default: results/<study id>]
     #[arg(long, short, value_name = "FILE", required_unless_present = "study")]
     out: Option<PathBuf>,
@@ -181,7 +188,7 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     let execution = Execution { threads: arguments.threads as usize };
     let volume = arguments.source.volume_alone().filter(|_| method.is_of_cubes());
     let is_measured = arguments.quality || arguments.json;
-    let (extraction, source, cells, counts) = match volume {
+    let (mut extraction, source, cells, mut counts) = match volume {
         Some(path) => {
             let OfOwnCells { extraction, source, cells } =
                 own_cells::extract(&arguments.source, path, &method, &execution, is_measured)?;
@@ -196,6 +203,8 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if let Some(source) = source.as_ref().filter(|_| extraction.mesh.triangles.is_empty()) {
         bail!(source.no_surface_of(&method));
     }
+    let made = [extraction.counts.triangles, extraction.counts.vertices];
+    let finishing = finished::finish(&mut extraction, &mut counts, &arguments.finish)?;
     write(arguments, out, format, &extraction.mesh)?;
     // With --json the report has it all.
     if !arguments.json
@@ -209,13 +218,16 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
         );
     }
     if !arguments.json {
-        tell_made(out, extraction.counts.triangles, extraction.counts.vertices, extraction.times.total());
+        let [triangles, vertices] = made;
+        tell_made(out, triangles, vertices, extraction.times.total());
     }
+    finishing.iter().for_each(|step| tell!("{}: {}", out.display(), step.to_line()));
     if let Some(source) = source.as_ref().filter(|_| is_measured) {
         let (field, isovalue, grid) = (&*source.field, source.isovalue, source.grid());
         let accuracy = isostudy_extract::accuracy(&extraction.mesh, field, isovalue, &grid, &execution);
         let accuracy = source.vouch(accuracy.map_err(anyhow::Error::from))?;
-        let report = QualityReport::new(method, source, cells, &extraction, counts, &accuracy);
+        let report = QualityReport::new(method, source, cells, &extraction, counts, &accuracy)
+            .with_finishing(finishing);
         say(&if arguments.json { serde_json::to_string_pretty(&report)? } else { report.to_text()? })?;
     }
     // With --json standard output is JSON and nothing else.

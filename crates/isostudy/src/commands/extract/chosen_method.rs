@@ -88,6 +88,9 @@ pub(super) fn recipe(text: &str) -> Result<Method, String> {
     if kinds().iter().all(|known| known.name != kind) {
         return Err(no_kind(kind, false));
     }
+    if table.contains_key(crate::finishing::KEY) {
+        return Err("finish is for studies; give --finish STEP:KEY=VALUE,... beside the recipe".into());
+    }
     // Errors in values do not say their key, for what has a kind is read twice.
     let known = Method::deserialize(value.clone()).map_err(|error| plainly(error.message()));
     known.map_err(|error| match guilty(table) {

@@ -1,6 +1,7 @@
 //! What `isostudy extract` prints of a mesh.
 
 use super::chosen_method::Described;
+use super::finished::StepReport;
 use crate::records;
 use crate::source::{Inside, Source};
 use crate::terminal::{counted, significant};
@@ -55,6 +56,9 @@ pub(super) struct QualityReport {
     topology: Topology,
     boundary_loops: u64,
     accuracy: Accuracy,
+    /// What was done to the mesh after it was extracted; all else is of the mesh after it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    finishing: Vec<StepReport>,
 }
 
 /// In place of what was looked for in another box.
@@ -104,7 +108,13 @@ impl QualityReport {
             boundary_loops: topology.boundary_loops,
             topology: records::topology(&topology, &extraction.mesh),
             accuracy,
+            finishing: Vec::new(),
         }
+    }
+
+    /// With what was done to the mesh.
+    pub(super) fn with_finishing(self, finishing: Vec<StepReport>) -> Self {
+        Self { finishing, ..self }
     }
 
     /// As lines for people.
@@ -164,7 +174,9 @@ impl QualityReport {
                 },
             ),
         ];
-        Ok(rows.map(|(name, value)| format!("{name:<15} {value}")).join("\n"))
+        let finishing = self.finishing.iter().map(|step| ("finishing", step.to_text()));
+        let rows = rows.into_iter().chain(finishing);
+        Ok(rows.map(|(name, value)| format!("{name:<15} {value}")).collect::<Vec<_>>().join("\n"))
     }
 }
 
