@@ -7,7 +7,7 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const CRATES: [&str; 22] = [
+const CRATES: [&str; 24] = [
     "mesh",
     "cells",
     "design",
