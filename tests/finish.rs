@@ -10,7 +10,7 @@ use std::path::Path;
 const BALL: [&str; 8] = [
     "extract",
     "--field",
-    "1 - sqrt(x^2 + y^2 + z^2)",
+    "sqrt(x^2 + y^2 + z^2) - 1",
     "--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2",
     "--spacing",
     "0.1",
@@ -21,7 +21,7 @@ const BALL: [&str; 8] = [
 const BOX: [&str; 8] = [
     "extract",
     "--field",
-    "1.05 - max(abs(x), max(abs(y), abs(z)))",
+    "max(abs(x), max(abs(y), abs(z))) - 1.05",
     "--bounds=-1.5,-1.5,-1.5,1.5,1.5,1.5",
     "--spacing",
     "0.1",
@@ -76,7 +76,7 @@ fn decimated_and_re_tiled_meshes_have_what_was_asked_for() {
 fn what_merging_does_to_topology_is_counted() {
     let folder = Folder::new();
     // Two balls a fiftieth apart.
-    let balls = "0.5 - min(length(x - 0.51, y, z), length(x + 0.51, y, z))";
+    let balls = "min(sqrt((x - 0.51)^2 + y^2 + z^2), sqrt((x + 0.51)^2 + y^2 + z^2)) - 0.5";
     let of = ["extract", "--field", balls, "--bounds=-1.2,-0.8,-0.8,1.2,0.8,0.8", "--spacing", "0.05"];
     let merge = "merge-by-distance:tolerance=0.03";
     let (found, said) = extracted(&folder, &of, &["--method", "mc", "--finish", merge, "--json"]);
@@ -133,17 +133,7 @@ fn bad_steps_are_refused_with_what_is_allowed() {
         assert!(!folder.path("no.ply").exists());
     }
     // Open at the box: vertices of the border stay.
-    let open = [
-        "extract",
-        "--field",
-        "z",
-        "--bounds=-1,-1,-1,1,1,1",
-        "--cells",
-        "20",
-        "--allow-open",
-        "-o",
-        "no.ply",
-    ];
+    let open = ["extract", "--field", "z", "--bounds=-1,-1,-1,1,1,1", "--cells", "20", "-o", "no.ply"];
     let run = folder.run(&[&open[..], &["--finish", "re-tile:points=50"]].concat());
     assert_eq!(run.code, Some(2), "{}", run.stderr);
     assert!(run.stderr.contains("80 vertices of borders and of faults stay"), "{}", run.stderr);
@@ -216,7 +206,7 @@ fn a_study_of_finished_methods_from_file_to_report() {
 fn the_panel_of_a_finished_method_has_its_stage() {
     let folder = study();
     let stages = |id: &str| -> Vec<String> {
-        let said = folder.succeed(&["inspect", "study.toml", id, "--json", "--iterations", "1"]);
+        let said = folder.succeed(&["inspect", id, "--study", "study.toml", "--json", "--iterations", "1"]);
         let panel: Value = serde_json::from_str(&said.stdout).unwrap();
         let times = panel["times"].as_array().unwrap();
         times.iter().map(|time| time["stage"].as_str().unwrap().to_owned()).collect()
@@ -233,7 +223,7 @@ fn bad_steps_of_a_study_are_refused_before_any_work() {
         (
             "step = \"decimate\", ratio = 0.5",
             "step = \"decimte\", ratio = 0.5",
-            vec!["study.toml: line 28: methods[1].recipe.finish[0]: ", "did you mean decimate?"],
+            vec!["study.toml: line 27: methods[1].recipe.finish[0]: ", "did you mean decimate?"],
         ),
         (
             "step = \"re-tile\", points = 900",

@@ -373,7 +373,10 @@ fn what_cannot_be_done_is_said_in_one_line() {
     #[cfg(unix)]
     std::os::unix::fs::symlink("/dev/zero", folder.path("zeros.stl")).unwrap();
     for (arguments, want) in [
-        (vec!["-o", "a.ply"], "<STUDY|--field <FORMULA>|--volume <FILE>|--mesh <FILE>|--labels <FILE>>"),
+        (
+            vec!["-o", "a.ply"],
+            "<STUDY|--field <FORMULA>|--volume <FILE>|--mesh <FILE>|--points <FILE>|--soup <FILE>|--grid <FILE>|--labels <FILE>>",
+        ),
         (vec!["--field", "x", "-o", "a.ply"], "--bounds"),
         (ball(&[]), "--out"),
         (ball(&["-o", "a.xyz"]), "a.xyz: known endings are .obj, .ply, .stl, .glb"),

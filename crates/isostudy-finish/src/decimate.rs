@@ -184,17 +184,25 @@ impl<'a> Pass<'a> {
     }
 
     /// Collapses edges until so few triangles are left, or no edge is. Returns how many were. What is refused is tried again each time
-    /// an eighth of the triangles has gone, for its neighbours may have changed.
+    /// an eighth of the triangles has gone, and when nothing else is left, for its neighbours may have changed.
     fn collapse_until(&mut self, goal: usize) -> usize {
         let mut collapsed = 0;
         let mut refused = Vec::new();
         let mut again_below = self.surface.triangle_count() / RETRIED * (RETRIED - 1);
+        let mut collapsed_before = 0;
         while self.surface.triangle_count() > goal {
             if self.surface.triangle_count() < again_below {
                 again_below = self.surface.triangle_count() / RETRIED * (RETRIED - 1);
                 self.heap.extend(refused.drain(..));
             }
-            let Some(Reverse(candidate)) = self.heap.pop() else { break };
+            let Some(Reverse(candidate)) = self.heap.pop() else {
+                if collapsed == collapsed_before {
+                    break;
+                }
+                collapsed_before = collapsed;
+                self.heap.extend(refused.drain(..));
+                continue;
+            };
             let Candidate { edge, changes, .. } = candidate;
             if edge.map(|v| self.changes[v as usize]) != changes {
                 continue;
@@ -224,8 +232,8 @@ impl<'a> Pass<'a> {
                 let (before, after) =
                     (self.surface.area_vector(t), self.surface.area_vector_with(t, moved, to));
                 let lengths = before.length() * after.length();
-                // What had no area had no side.
-                if before.length_squared() == 0.0 {
+                // What had no area but that of rounding had no side.
+                if is_rounding(self.surface.corners(t), before) {
                     return true;
                 }
                 if before.dot(after) <= LEAST_COSINE * lengths {
@@ -257,6 +265,14 @@ impl<'a> Pass<'a> {
         }
         self.around = around;
     }
+}
+
+/// Whether a triangle is no higher than single precision lets its corners lie off their places.
+fn is_rounding(corners: [DVec3; 3], area_vector: DVec3) -> bool {
+    let [a, b, c] = corners;
+    let farthest = corners.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    area_vector.length() <= 4.0 * f64::from(f32::EPSILON) * farthest * longest
 }
 
 /// `4 sqrt(3) area / sum of squared edges`: 1 of an equilateral triangle, 0 without area.

@@ -3,7 +3,7 @@
 use crate::memory::{self, Limit};
 use crate::scattered_file::WantedPoints;
 use crate::source::{Inside, Options, Source};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 use isostudy_extract::{Execution, Method};
@@ -116,6 +116,7 @@ impl SourceArguments {
     }
 
     fn read_by(&self, options: Options) -> Result<Option<Source>> {
+        self.scattered.check()?;
         if let Some(formula) = &self.field {
             let bounds = self.bounds.context("--bounds is needed")?;
             return options.of_formula(formula, bounds, "--field").map(Some);
@@ -160,6 +161,30 @@ struct ScatteredArguments {
     /// The distance within which the triangles of soup are blended; 0 goes through them [default: 1 % of the diagonal of their box]
     #[arg(long, value_name = "LENGTH", value_parser = not_negative, requires = "soup", allow_hyphen_values = true)]
     epsilon: Option<f64>,
+}
+
+impl ScatteredArguments {
+    /// clap asks for what an argument requires only where nothing else conflicts with that.
+    ///
+    /// # Errors
+    /// If an argument has nothing to be about, naming both.
+    fn check(&self) -> Result<()> {
+        let of_points = [
+            ("normals", self.normals.is_some()),
+            ("kernel", self.kernel.is_some()),
+            ("offset", self.offset.is_some()),
+            ("smoothing", self.smoothing.is_some()),
+            ("centres", self.centres.is_some()),
+        ];
+        let misplaced = of_points.iter().find(|(_, is_given)| *is_given && self.points.is_none());
+        if let Some((name, _)) = misplaced {
+            bail!("--{name} is for --points");
+        }
+        if self.epsilon.is_some() && self.soup.is_none() {
+            bail!("--epsilon is for --soup");
+        }
+        Ok(())
+    }
 }
 
 /// Where the normals of points come from.
