@@ -8,7 +8,7 @@ ifndef SEED
 SEED := $(shell od -An -N4 -tu4 /dev/urandom | tr -d ' ')
 endif
 
-.PHONY: help study test test-long attacks quick terrain bench bench-sweep figures check bunny three viewer-library clean
+.PHONY: help study test test-long attacks quick terrain bench bench-sweep figures check bunny three viewer-library cgal clean
 
 help: ## list these entries
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 11
@@ -44,6 +44,13 @@ cache/methods/installed: scripts/methods/requirements.txt
 	python3 -m venv cache/methods
 	if cache/methods/bin/pip install --quiet --requirement scripts/methods/requirements.txt; then touch $@; \
 	else echo "VTK could not be installed: its methods are left out" >&2; fi
+
+cgal: cache/methods/cgal-surface-mesher ## build CGAL's surface mesher, a program of its own (Debian: apt install libcgal-dev)
+
+cache/methods/cgal-surface-mesher: scripts/methods/cgal_surface_mesher.cpp
+	@mkdir -p cache/methods
+	@if $(CXX) -std=c++17 -O2 -DNDEBUG -o $@ $< -lmpfr -lgmp; then :; \
+	else echo "CGAL's surface mesher was not built: it needs a C++17 compiler and CGAL 5 (Debian: apt install libcgal-dev)" >&2; exit 1; fi
 
 bench: bunny ## time every configuration 100 times, as the paper does, and renew the tables
 	$(ISOSTUDY) bench configs/paper.toml
