@@ -139,6 +139,9 @@ pub(crate) fn without_measured_times(mut files: BTreeMap<String, Vec<u8>>) -> BT
     };
     let counts: Vec<String> = benchmark.lines().map(|line| cut(line).join(",")).collect();
     files.insert("counts".into(), counts.join("\n").into_bytes());
+    if let Some(contents) = files.remove("figures/contents.json") {
+        files.insert("captions".into(), captions_without_times(&contents).into_bytes());
+    }
     const MEASURED: [&str; 21] = [
         "bench/",
         "data/times.",
@@ -164,4 +167,13 @@ pub(crate) fn without_measured_times(mut files: BTreeMap<String, Vec<u8>>) -> BT
     ];
     files.retain(|path, _| !MEASURED.iter().any(|start| path.starts_with(start)));
     files
+}
+
+/// Names and captions of the figures whose captions do not name the machine that measured times.
+fn captions_without_times(contents: &[u8]) -> String {
+    let figures: Vec<serde_json::Value> = serde_json::from_slice(contents).unwrap();
+    let text = |figure: &serde_json::Value, key: &str| figure[key].as_str().unwrap().to_owned();
+    let captions = figures.iter().map(|figure| (text(figure, "name"), text(figure, "caption")));
+    let without = captions.filter(|(name, _)| !["fronts", "pass_times", "stage_times"].contains(&&**name));
+    without.map(|(name, caption)| format!("{name}: {caption}\n")).collect()
 }
