@@ -156,8 +156,9 @@ impl Worker {
         allowance: Allowance,
     ) -> Result<(Self, Option<Vec<u32>>), BenchError> {
         let limits = Limits { line_bytes: LINE_LIMIT_BYTES, memory_bytes: allowance.memory_bytes };
+        let program = shown_in_a_line(&command.get_program().to_string_lossy()).into_owned();
         let child = Child::start(&mut command, limits, tell)
-            .map_err(|error| BenchError::Process(format!("cannot be started: {error}")))?;
+            .map_err(|error| BenchError::Process(format!("cannot be started: {program}: {error}")))?;
         let mut worker = Self { child, allowance };
         let pinned = worker.reply()?.ready()?;
         Ok((worker, pinned))
@@ -223,7 +224,10 @@ mod tests {
     fn a_process_that_cannot_be_asked_is_an_error() {
         let missing = || Command::new("/nowhere/isostudy");
         let error = ProcessExecutor::new(&missing).begin().unwrap_err();
-        assert!(error.to_string().starts_with("the measuring process: cannot be started: "), "{error}");
+        assert!(
+            error.to_string().starts_with("the measuring process: cannot be started: /nowhere/isostudy: "),
+            "{error}"
+        );
     }
 
     #[cfg(unix)]
