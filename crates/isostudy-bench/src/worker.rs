@@ -53,19 +53,12 @@ impl Prepared<'_> {
 }
 
 impl Prepared<'_> {
-    /// Extracts once and says how long each stage took, and what was counted meanwhile.
-    ///
-    /// # Errors
-    /// Why it cannot be extracted.
-    pub fn time(&self, threads: u32) -> Result<Timed, String> {
-        self.time_with(threads, None)
-    }
-
-    /// The same with what finishes the mesh, which is a stage of its own.
+    /// Extracts once and says how long each stage took, and what was counted meanwhile. What finishes the mesh, if anything does, is a
+    /// stage of its own.
     ///
     /// # Errors
     /// Why it cannot be extracted or finished.
-    pub fn time_with(&self, threads: u32, finish: Option<Finish<'_>>) -> Result<Timed, String> {
+    pub fn time(&self, threads: u32, finish: Option<Finish<'_>>) -> Result<Timed, String> {
         let meter = Meter::begin();
         let made = self.made(&Execution { threads: threads as usize }, finish);
         let counters = meter.end();
@@ -88,37 +81,21 @@ impl Prepared<'_> {
     }
 
     /// What an extraction asks of the allocator, on one thread, which must be alone in the process; `None` where nobody counts
-    /// ([`count_allocations`](crate::count_allocations)).
-    ///
-    /// # Errors
-    /// Why it cannot be extracted.
-    pub fn allocations(&self) -> Result<Option<AllocationCounts>, String> {
-        self.allocations_with(None)
-    }
-
-    /// The same with what finishes the mesh, which counts in the total alone.
+    /// ([`count_allocations`](crate::count_allocations)). Finishing counts in the total alone.
     ///
     /// # Errors
     /// Why it cannot be extracted or finished.
-    pub fn allocations_with(&self, finish: Option<Finish<'_>>) -> Result<Option<AllocationCounts>, String> {
+    pub fn allocations(&self, finish: Option<Finish<'_>>) -> Result<Option<AllocationCounts>, String> {
         allocations(|execution| self.made(execution, finish).map(|(extraction, _)| extraction))
     }
 
-    /// Extracts once and says how much memory that took.
+    /// Extracts and finishes once, and says how much memory that took.
     ///
     /// # Errors
-    /// Why it cannot be extracted.
-    pub fn memory(&self, threads: u32) -> Result<Option<PeakBytes>, String> {
-        self.memory_with(threads, None)
-    }
-
-    /// The same with what finishes the mesh.
-    ///
-    /// # Errors
-    /// Why it cannot be extracted or finished.
-    pub fn memory_with(&self, threads: u32, finish: Option<Finish<'_>>) -> Result<Option<PeakBytes>, String> {
+    /// As [`time`](Self::time).
+    pub fn memory(&self, threads: u32, finish: Option<Finish<'_>>) -> Result<Option<PeakBytes>, String> {
         let before = resident_bytes();
-        self.time_with(threads, finish)?;
+        self.time(threads, finish)?;
         Ok(before.zip(resident_bytes()).map(|([before_bytes, peak_before_bytes], [_, peak_bytes])| {
             PeakBytes { before_bytes, peak_before_bytes, peak_bytes }
         }))
@@ -152,15 +129,15 @@ pub trait Measured {
 
 impl<'a, F: FnMut(usize) -> Result<Prepared<'a>, String>> Measured for F {
     fn time(&mut self, number: usize, threads: u32) -> Result<Timed, String> {
-        self(number)?.time(threads)
+        self(number)?.time(threads, None)
     }
 
     fn memory(&mut self, number: usize, threads: u32) -> Result<Option<PeakBytes>, String> {
-        self(number)?.memory(threads)
+        self(number)?.memory(threads, None)
     }
 
     fn allocations(&mut self, number: usize) -> Result<Option<AllocationCounts>, String> {
-        self(number)?.allocations()
+        self(number)?.allocations(None)
     }
 }
 
@@ -346,11 +323,11 @@ mod tests {
             std::thread::sleep(wait);
             Ok(extraction)
         };
-        let stages = of.time_with(1, Some(&slow)).unwrap().stages;
+        let stages = of.time(1, Some(&slow)).unwrap().stages;
         assert!(stages.finishing_s >= wait.as_secs_f64());
         assert!(stages.total() >= stages.finishing_s + stages.geometry_s);
-        assert_eq!(of.time(1).unwrap().stages.finishing_s, 0.0);
-        let refused = of.time_with(1, Some(&|_| Err("no".into())));
+        assert_eq!(of.time(1, None).unwrap().stages.finishing_s, 0.0);
+        let refused = of.time(1, Some(&|_| Err("no".into())));
         assert_eq!(refused, Err("no".into()));
     }
 

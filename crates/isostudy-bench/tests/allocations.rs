@@ -50,7 +50,7 @@ fn grid() -> BoxGrid {
 fn counted(method: Method, bytes: usize) -> (AllocationCounts, u64) {
     let ball = Ball { bytes, samples: AtomicU64::new(0) };
     let prepared = Prepared { field: &ball, method, grid: grid(), isovalue: 0.0 };
-    let counts = prepared.allocations().unwrap().expect("somebody counts");
+    let counts = prepared.allocations(None).unwrap().expect("somebody counts");
     (counts, ball.samples.into_inner() / 3)
 }
 
@@ -64,7 +64,7 @@ fn what_is_planted_is_counted_where_it_is() {
     let ball = Ball { bytes: 0, samples: AtomicU64::new(0) };
     let plain = Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred));
     let prepared = Prepared { field: &ball, method: plain, grid: grid(), isovalue: 0.0 };
-    assert_eq!(prepared.allocations(), Ok(None), "nobody counts yet");
+    assert_eq!(prepared.allocations(None), Ok(None), "nobody counts yet");
     count_allocations(asked);
     a_field_that_allocates_does_so_in_the_sampling_stage();
     the_dense_extractor_takes_what_its_lattice_says();

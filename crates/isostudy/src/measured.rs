@@ -1,12 +1,10 @@
 //! The configurations of a study in front of the clock: extractors of ours, and programs that stay started.
 
-use crate::finishing;
 use crate::prepare::Prepared;
 use crate::recipe::Recipe;
 use isostudy_bench::{AllocationCounts, Asked, Finish, Measured, PeakBytes, StageSeconds, Timed};
 use isostudy_design::record::Counters;
 use isostudy_extract::Extraction;
-use isostudy_finish::Extent;
 use isostudy_mesh::TriangleMesh;
 use isostudy_program::{Answer, Program, Samples, Worker, write_samples};
 use std::collections::HashMap;
@@ -104,7 +102,7 @@ impl Measured for Clock<'_> {
                 Ok(Timed { stages, counters: Counters::default() })
             }
             _ => extractor(&prepared)?
-                .time_with(threads, steps(&prepared, &|of| finished_extraction(&prepared, of))),
+                .time(threads, steps(&prepared, &|of| finished_extraction(&prepared, of))),
         }
     }
 
@@ -124,7 +122,7 @@ impl Measured for Clock<'_> {
             }
             Recipe::GridCells => Ok(None),
             _ => extractor(&prepared)?
-                .memory_with(threads, steps(&prepared, &|of| finished_extraction(&prepared, of))),
+                .memory(threads, steps(&prepared, &|of| finished_extraction(&prepared, of))),
         }
     }
 
@@ -133,8 +131,9 @@ impl Measured for Clock<'_> {
         let prepared = (self.prepare)(number)?;
         match &prepared.recipe {
             Recipe::Program(_) | Recipe::GridCells => Ok(None),
-            _ => extractor(&prepared)?
-                .allocations_with(steps(&prepared, &|of| finished_extraction(&prepared, of))),
+            _ => {
+                extractor(&prepared)?.allocations(steps(&prepared, &|of| finished_extraction(&prepared, of)))
+            }
         }
     }
 }
@@ -164,7 +163,8 @@ fn steps<'f>(prepared: &Prepared<'_>, finish: Finish<'f>) -> Option<Finish<'f>> 
 }
 
 fn finished_extraction(prepared: &Prepared<'_>, of: Extraction) -> Result<Extraction, String> {
-    Ok(Extraction { mesh: finished(prepared, of.mesh)?, ..of })
+    let mesh = prepared.finished(of.mesh).map_err(|error| format!("{}: {error:#}", prepared.id))?;
+    Ok(Extraction { mesh, ..of })
 }
 
 /// Seconds that the finishing steps take, of a mesh that is asked for where there are any.
@@ -175,17 +175,7 @@ fn finishing_s(
     if prepared.finish.is_empty() {
         return Ok(0.0);
     }
-    let mesh = mesh()?;
-    let began = Instant::now();
-    black_box(finished(prepared, mesh)?);
-    Ok(began.elapsed().as_secs_f64())
-}
-
-/// The mesh after its finishing steps. Normals are timed where they are made, with the mesh that is extracted, and not once more.
-fn finished(prepared: &Prepared<'_>, mut mesh: TriangleMesh) -> Result<TriangleMesh, String> {
-    mesh.normals = Vec::new();
-    let finished = finishing::finish(mesh, &prepared.finish, Extent::Whole);
-    finished.map(|of| of.mesh).map_err(|error| format!("{}: {error:#}", prepared.id))
+    prepared.finishing_s(mesh()?).map_err(|error| format!("{}: {error:#}", prepared.id))
 }
 
 fn extractor<'a>(prepared: &Prepared<'a>) -> Result<isostudy_bench::Prepared<'a>, String> {
