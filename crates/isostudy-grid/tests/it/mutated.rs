@@ -1,11 +1,15 @@
 //! Files damaged in every way: no panic, and what is read all the same is sound.
 
+#[path = "../../../../tests/damage.rs"]
+mod damage;
+
+use damage::damage;
 use std::sync::Arc;
 
 use isostudy_field::StudyField;
 use isostudy_grid::GridField;
 use isostudy_mesh::Bounds;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
 use crate::files::{LIMIT, Written, all};
@@ -81,33 +85,13 @@ fn corpus(reader: &str) -> Corpus {
     files
 }
 
-fn mutate(bytes: &mut Vec<u8>, random: &mut Pcg64) {
-    for _ in 0..random.random_range(1..=2) {
-        let at = random.random_range(0..=bytes.len());
-        let end = (at + random.random_range(0..=40)).min(bytes.len());
-        let token = TOKENS[random.random_range(0..TOKENS.len())];
-        match random.random_range(0..7) {
-            0 if at < bytes.len() => bytes[at] ^= 1 << random.random_range(0..8),
-            1 if at < bytes.len() => bytes[at] = random.random(),
-            2 => drop(bytes.drain(at..end)),
-            3 => drop(bytes.splice(at..at, token.iter().copied())),
-            4 => drop(bytes.splice(at..(at + token.len()).min(bytes.len()), token.iter().copied())),
-            5 => {
-                let copy = bytes[at..end].to_vec();
-                drop(bytes.splice(at..at, copy));
-            }
-            _ => bytes.truncate(at),
-        }
-    }
-}
-
 fn run(reader: &str, rounds: u64, seed: u64) {
     let corpus = corpus(reader);
     let (mut read, mut refused) = (0, 0);
     for round in 0..rounds {
         let mut random = Pcg64::seed_from_u64(seed + round);
         let (name, array, mut bytes) = corpus[round as usize % corpus.len()].clone();
-        mutate(&mut bytes, &mut random);
+        damage(&mut bytes, &TOKENS, [2, 40], &mut random);
         let file = Written::new(name, &bytes);
         if reader == "tetgen" {
             let (other, _, text) = corpus.iter().find(|(other, ..)| *other != name).unwrap();

@@ -1,11 +1,15 @@
 //! Files of points damaged in every way: no panic, no memory beyond the file's size, and what is read all the same makes a field or an
 //! error. The fields of damaged meshes too.
 
+#[path = "../../../../tests/damage.rs"]
+mod damage;
+
+use damage::damage;
 use isostudy_field::StudyField;
 use isostudy_mesh::glam::Vec3;
 use isostudy_mesh::read_obj;
 use isostudy_scattered::{PointField, PointFormat, PointSettings, SoupField, read_points};
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
 const ROUNDS: u64 = 5000;
@@ -61,29 +65,6 @@ fn sound(format: PointFormat) -> Vec<u8> {
     text.into_bytes()
 }
 
-fn mutate(bytes: &mut Vec<u8>, random: &mut Pcg64) {
-    for _ in 0..random.random_range(1..=4) {
-        let at = random.random_range(0..=bytes.len());
-        let end = (at + random.random_range(0..=60)).min(bytes.len());
-        let token = TOKENS[random.random_range(0..TOKENS.len())];
-        match random.random_range(0..7) {
-            0 if at < bytes.len() => bytes[at] ^= 1 << random.random_range(0..8),
-            1 if at < bytes.len() => bytes[at] = random.random(),
-            2 => drop(bytes.drain(at..end)),
-            3 => drop(bytes.splice(at..at, token.iter().copied())),
-            4 => {
-                let end = (at + token.len()).min(bytes.len());
-                drop(bytes.splice(at..end, token.iter().copied()));
-            }
-            5 => {
-                let copy = bytes[at..end].to_vec();
-                drop(bytes.splice(at..at, copy));
-            }
-            _ => bytes.truncate(at),
-        }
-    }
-}
-
 #[test]
 fn damaged_files_of_points_are_refused_or_make_a_field() {
     for (number, format) in PointFormat::ALL.into_iter().enumerate() {
@@ -91,7 +72,7 @@ fn damaged_files_of_points_are_refused_or_make_a_field() {
         for round in 0..ROUNDS {
             let mut random = Pcg64::seed_from_u64(1000 * ROUNDS * number as u64 + round);
             let mut bytes = sound(format);
-            mutate(&mut bytes, &mut random);
+            damage(&mut bytes, &TOKENS, [4, 60], &mut random);
             let cloud = match read_points(format, &bytes[..]) {
                 Ok(cloud) => cloud,
                 Err(error) => {
@@ -127,7 +108,7 @@ fn damaged_soup_is_refused_or_makes_a_field() {
     let (mut fields, mut refused) = (0, 0);
     for round in 0..ROUNDS {
         let mut bytes = sound.to_vec();
-        mutate(&mut bytes, &mut Pcg64::seed_from_u64(round));
+        damage(&mut bytes, &TOKENS, [4, 60], &mut Pcg64::seed_from_u64(round));
         let Ok(mesh) = read_obj(&bytes[..]) else { continue };
         for epsilon in [Some(0.0), None] {
             match SoupField::try_new(&mesh, epsilon) {

@@ -1,8 +1,12 @@
 //! Files damaged in every way: no panic, and what is read all the same is sound.
 
+#[path = "../../../../tests/damage.rs"]
+mod damage;
+
 use crate::files::*;
+use damage::damage;
 use isostudy_volume::Problem;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
 /// What breaks readers.
@@ -56,26 +60,6 @@ fn corpus() -> Vec<(&'static str, Vec<u8>)> {
     files
 }
 
-fn mutate(bytes: &mut Vec<u8>, random: &mut Pcg64) {
-    for _ in 0..random.random_range(1..=4) {
-        let at = random.random_range(0..=bytes.len());
-        let end = (at + random.random_range(0..=40)).min(bytes.len());
-        let token = TOKENS[random.random_range(0..TOKENS.len())];
-        match random.random_range(0..7) {
-            0 if at < bytes.len() => bytes[at] ^= 1 << random.random_range(0..8),
-            1 if at < bytes.len() => bytes[at] = random.random(),
-            2 => drop(bytes.drain(at..end)),
-            3 => drop(bytes.splice(at..at, token.iter().copied())),
-            4 => drop(bytes.splice(at..(at + token.len()).min(bytes.len()), token.iter().copied())),
-            5 => {
-                let copy = bytes[at..end].to_vec();
-                drop(bytes.splice(at..at, copy));
-            }
-            _ => bytes.truncate(at),
-        }
-    }
-}
-
 fn run(rounds: u64, seed: u64) {
     let (folder, corpus) = (Folder::new(), corpus());
     folder.write("a.data", bytes("u8", false));
@@ -83,7 +67,7 @@ fn run(rounds: u64, seed: u64) {
     for round in 0..rounds {
         let mut random = Pcg64::seed_from_u64(seed + round);
         let (name, mut bytes) = corpus[round as usize % corpus.len()].clone();
-        mutate(&mut bytes, &mut random);
+        damage(&mut bytes, &TOKENS, [4, 40], &mut random);
         folder.write(name, &bytes);
         let read_whole = isostudy_volume::read(&folder.path(name), 1 << 20);
         // What can be read in parts has the same samples, or the same fault.
