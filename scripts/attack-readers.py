@@ -10,6 +10,7 @@ character in what it says. A mutant that breaks this is kept in the current fold
 
 import gzip
 import json
+import math
 import os
 import random
 import re
@@ -60,6 +61,7 @@ def sound_files(isostudy, folder):
     }
     for name, data in volumes.items():
         (folder / name).write_bytes(data)
+    shutil.copy(PROJECT / "crates/isostudy-grid/tests/it/vtk/few.ele", folder)
     (folder / "labels.nrrd").write_bytes(head("raw") + b"\n" + labels)
     run("extract", "--field", "sqrt(x^2+y^2+z^2) - 1", "--bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2", "--cells", "6", "-o", "sound.ply")
     for kind in ("obj", "stl"):
@@ -91,6 +93,16 @@ def sound_files(isostudy, folder):
     yield "answers", list(answers.items()), ["convert", "{}", "--to", "long", "-o", "{out}.csv"]
     yield "analysis", [("long.csv", answers["long.csv"])], ["analyse", "{}", "-o", "{out}"]
     yield "table", [("table.json", (folder / "table.json").read_bytes())], ["table", "{}"]
+    grids = PROJECT / "crates/isostudy-grid/tests/it/vtk"
+    yield "grid", [(path.name, path.read_bytes()) for path in sorted(grids.glob("mixed_*"))], ["extract", "--grid", "{}", "--isovalue", "0.105", *small]
+    yield "tetgen", [("few.node", (grids / "few.node").read_bytes())], ["extract", "--grid", "{}", "--isovalue", "0.105", *small]
+    spiral = [(math.sin(2.4 * i), math.cos(2.4 * i), 0.9 - 0.06 * i) for i in range(30)]
+    rows = [(*p, *(x / math.dist(p, (0, 0, 0)) for x in p)) for p in spiral]
+    scan = "".join("%.4f %.4f %.4f %.4f %.4f %.4f\n" % row for row in rows)
+    names = "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+    ply = f"ply\nformat ascii 1.0\nelement vertex {len(rows)}\n{names}end_header\n{scan}"
+    yield "points", [("scan.xyz", scan.encode()), ("scan.ply", ply.encode())], ["extract", "--points", "{}", "--cells", "5", *small]
+    yield "soup", meshes, ["extract", "--soup", "{}", "--cells", "5", *small]
     yield "formula", [("formula", b"min(sqrt(x^2+y^2+z^2) - 1, max(abs(x), 0.3*fbm(x*2, y, z, 3)) - sin(y))")], ["extract", "--field", "{text}", "--bounds=-1,-1,-1,1,1,1", "--cells", "5", *small]
 
 
@@ -131,7 +143,7 @@ def damaged(data, others, chance):
 def attack(isostudy, folder, number, name, data, words):
     place = folder / f"run{number}"
     place.mkdir()
-    for beside in ("data.raw", "raw.nrrd", "sound.ply"):
+    for beside in ("data.raw", "raw.nrrd", "sound.ply", "few.ele"):
         os.link(folder / beside, place / beside)
     file = place / name.replace("sound.", "damaged.").replace("raw.nrrd", "damaged.nrrd")
     if "{text}" in words:
