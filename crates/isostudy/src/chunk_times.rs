@@ -22,39 +22,57 @@ const EDITS: usize = 10;
 const EDIT_ROUNDS: usize = 3;
 
 /// Times every chunk of so many cells a side that has triangles, round by round, then edits: the chunks round a point of the surface,
-/// extracted again. The points are vertices of marching cubes whatever the method, so that all are asked the same. All on the calling
-/// thread. `None` for what makes no chunks, and where a finishing step needs the whole mesh, which is said. What finishes a chunk leaves
-/// its borders as they are, and is in its times.
+/// extracted again. The points are vertices of marching cubes whatever the method, so that all configurations, which are of one object
+/// with the same cubes, are asked the same. They work in turn, all on the calling thread. Not in the result are those that make no
+/// chunks, and those with a finishing step that needs the whole mesh, which is said. What finishes a chunk leaves its borders as they
+/// are, and is in its times. `progress` is told how much of how much is done.
 ///
 /// # Errors
 /// If the chunks cannot be extracted, or do not fit together.
-pub(crate) fn chunk_times(prepared: &Prepared<'_>, cells: u32, rounds: u32) -> Result<Option<ChunkTimes>> {
-    let Some(of) = prepared.extractor() else { return Ok(None) };
-    if !goes_in_chunks(prepared) {
-        return Ok(None);
+pub(crate) fn chunk_times(
+    all: &[Prepared<'_>],
+    cells: u32,
+    rounds: u32,
+    progress: &dyn Fn(usize, usize),
+) -> Result<Vec<ChunkTimes>> {
+    let mut kept: Vec<FieldCache> = all.iter().map(|_| FieldCache::default()).collect();
+    let mut works = Vec::new();
+    for (prepared, kept) in all.iter().zip(&mut kept) {
+        let Some(of) = prepared.extractor().filter(|_| goes_in_chunks(prepared)) else { continue };
+        let field = of.field.prepared(kept).unwrap_or(of.field);
+        let source = Source::Study(field);
+        let begun =
+            Chunks::begin(&of, &prepared.finish, source, cells).with_context(|| prepared.id.to_string())?;
+        works.extend(begun.map(|work| (prepared, of, work)));
     }
-    let mut kept = FieldCache::default();
-    let field = of.field.prepared(&mut kept).unwrap_or(of.field);
-    let Some(mut work) = Chunks::begin(&of, &prepared.finish, Source::Study(field), cells)? else {
-        return Ok(None);
-    };
-    let chunk_s = work.each(rounds)?;
+    let Some((_, of, _)) = works.first() else { return Ok(Vec::new()) };
+    let places = places(of)?;
+    let mut chunks: Vec<&mut Chunks<'_>> = works.iter_mut().map(|(_, _, work)| work).collect();
+    time_in_turn(&mut chunks, rounds, &places, progress)?;
+    works.iter().map(|(prepared, of, work)| record(prepared, of, work, cells)).collect()
+}
+
+fn record(
+    prepared: &Prepared<'_>,
+    of: &isostudy_bench::Prepared<'_>,
+    work: &Chunks<'_>,
+    cells: u32,
+) -> Result<ChunkTimes> {
     let whole = of.extract(&Execution { threads: 1 })?.mesh;
-    let (edit_chunks, edit_s) = work.edits(&places(&of)?)?;
     let welded = work.welded().with_context(|| format!("{}: its chunks", prepared.id))?;
     let [open, of_whole] =
         [&welded, &whole].map(|mesh| isostudy_mesh::topology::topology(mesh).boundary_edges as i64);
-    Ok(Some(ChunkTimes {
+    Ok(ChunkTimes {
         id: prepared.id.clone(),
         cells,
         chunks: work.boxes.len() as u64,
         timed: work.timed.len() as u64,
-        chunk_s,
-        edit_chunks,
-        edit_s,
+        chunk_s: work.chunk_s.clone(),
+        edit_chunks: work.edits.iter().map(|edit| edit.touched.len() as u64).collect(),
+        edit_s: work.edit_s(),
         open_seam_edges: open - of_whole,
         is_whole: welded.positions == whole.positions && welded.triangles == whole.triangles,
-    }))
+    })
 }
 
 /// Whether a configuration's finishing steps can be applied to chunks; it is said why not.
@@ -78,6 +96,64 @@ pub(crate) struct Chunks<'a> {
     chunks: Vec<Chunk>,
     /// Those of all cells that have triangles.
     pub(crate) timed: Vec<usize>,
+    /// Seconds for each of these, round by round.
+    pub(crate) chunk_s: Vec<f64>,
+    edits: Vec<Edit>,
+}
+
+/// The chunks that an edit touches, and the seconds to extract them again, round by round.
+struct Edit {
+    touched: Vec<usize>,
+    rounds_s: Vec<f64>,
+}
+
+/// Lets works of one object take turns, round by round, and another begin each round: what slows the machine for a while, and what
+/// the one before leaves in its caches, is shared by all alike.
+///
+/// # Errors
+/// The first of a turn.
+pub(crate) fn in_turn<W>(
+    works: &mut [W],
+    rounds: usize,
+    mut turn: impl FnMut(&mut W) -> Result<()>,
+) -> Result<()> {
+    let count = works.len();
+    for round in 0..rounds {
+        for place in 0..count {
+            turn(&mut works[(place + round) % count])?;
+        }
+    }
+    Ok(())
+}
+
+/// Times the chunks and then the edits of several methods in turn.
+///
+/// # Errors
+/// If a chunk cannot be extracted.
+pub(crate) fn time_in_turn(
+    works: &mut [&mut Chunks<'_>],
+    rounds: u32,
+    places: &[Vec3],
+    progress: &dyn Fn(usize, usize),
+) -> Result<()> {
+    let turns = works.len() * (rounds as usize + places.len() * EDIT_ROUNDS);
+    let mut done = 0;
+    let mut tell = || {
+        done += 1;
+        progress(done, turns);
+    };
+    in_turn(works, rounds as usize, |work| {
+        tell();
+        work.time_each()
+    })?;
+    for &at in places {
+        works.iter_mut().for_each(|work| work.begin_edit(at));
+        in_turn(works, EDIT_ROUNDS, |work| {
+            tell();
+            work.time_edit()
+        })?;
+    }
+    Ok(())
 }
 
 impl<'a> Chunks<'a> {
@@ -104,8 +180,18 @@ impl<'a> Chunks<'a> {
         let spacing = of.grid.spacing;
         let finished =
             if finish.is_empty() { Vec::new() } else { vec![TriangleMesh::default(); boxes.len()] };
-        let mut work =
-            Self { finish, finished, extractor, source, spacing, boxes, chunks, timed: Vec::new() };
+        let mut work = Self {
+            finish,
+            finished,
+            extractor,
+            source,
+            spacing,
+            boxes,
+            chunks,
+            timed: Vec::new(),
+            chunk_s: Vec::new(),
+            edits: Vec::new(),
+        };
         for i in 0..work.boxes.len() {
             work.again(i)?;
         }
@@ -142,36 +228,39 @@ impl<'a> Chunks<'a> {
         Ok(isostudy_mesh::weld(&all))
     }
 
-    /// Seconds for each chunk that is timed, round by round.
-    ///
-    /// # Errors
-    /// If a chunk cannot be extracted.
-    pub(crate) fn each(&mut self, rounds: u32) -> Result<Vec<f64>> {
-        let all = (0..rounds).flat_map(|_| self.timed.clone()).collect::<Vec<_>>();
-        all.into_iter().map(|i| self.again(i)).collect()
+    /// Times each chunk once more.
+    fn time_each(&mut self) -> Result<()> {
+        for place in 0..self.timed.len() {
+            let seconds = self.again(self.timed[place])?;
+            self.chunk_s.push(seconds);
+        }
+        Ok(())
     }
 
-    /// For an edit at each of the places, how many chunks it touches, and the seconds to extract these again.
-    ///
-    /// # Errors
-    /// If a chunk cannot be extracted.
-    pub(crate) fn edits(&mut self, places: &[Vec3]) -> Result<(Vec<u64>, Vec<f64>)> {
-        let (mut edit_chunks, mut edit_s) = (Vec::new(), Vec::new());
-        for at in places {
-            let changed = Aabb::around(at.to_array(), REACH * self.spacing);
-            let touched: Vec<usize> =
-                (0..self.boxes.len()).filter(|&i| self.chunks[i].is_touched_by(changed)).collect();
-            let mut rounds = [0.0; EDIT_ROUNDS];
-            for seconds in &mut rounds {
-                for &i in &touched {
-                    *seconds += self.again(i)?;
-                }
-            }
-            rounds.sort_unstable_by(f64::total_cmp);
-            edit_chunks.push(touched.len() as u64);
-            edit_s.push(rounds[EDIT_ROUNDS / 2]);
-        }
-        Ok((edit_chunks, edit_s))
+    /// Begins an edit at a place.
+    fn begin_edit(&mut self, at: Vec3) {
+        let changed = Aabb::around(at.to_array(), REACH * self.spacing);
+        let touched = (0..self.boxes.len()).filter(|&i| self.chunks[i].is_touched_by(changed)).collect();
+        self.edits.push(Edit { touched, rounds_s: Vec::new() });
+    }
+
+    /// Times the edit that was begun last once more.
+    fn time_edit(&mut self) -> Result<()> {
+        let Some(mut edit) = self.edits.pop() else { return Ok(()) };
+        let seconds = edit.touched.iter().map(|&i| self.again(i)).sum::<Result<f64>>()?;
+        edit.rounds_s.push(seconds);
+        self.edits.push(edit);
+        Ok(())
+    }
+
+    /// Of each edit the median of its rounds.
+    pub(crate) fn edit_s(&self) -> Vec<f64> {
+        let median = |edit: &Edit| {
+            let mut rounds_s = edit.rounds_s.clone();
+            rounds_s.sort_unstable_by(f64::total_cmp);
+            rounds_s[rounds_s.len() / 2]
+        };
+        self.edits.iter().map(median).collect()
     }
 }
 

@@ -1,18 +1,21 @@
-//! Times beside those of the benchmark, where the study asks for them: chunk by chunk, and from stored samples. Configuration by
-//! configuration, so that a killed run goes on.
+//! Times beside those of the benchmark, where the study asks for them: chunk by chunk, and from stored samples. Object by object, so
+//! that a killed run goes on; the methods of an object take turns, so that a slow minute of the machine is nobody's.
 
 use super::Pipeline;
 use crate::chunk_times::chunk_times;
 use crate::prepare::{Prepared, Wanted};
-use crate::store::{Inputs, Stamp};
+use crate::store::{FileStamp, Inputs, Stamp};
 use crate::stored_times::stored_times;
 use crate::terminal::progress::Step;
 use crate::{machine, source_digests};
 use anyhow::{Context, Result};
-use isostudy_design::Configuration;
 use isostudy_design::record::Purpose;
+use isostudy_design::{Configuration, ConfigurationId};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+
+/// The bar moves within an object.
+const TICKS_AN_OBJECT: usize = 1000;
 
 impl Pipeline<'_> {
     /// Times the chunks of every configuration with its object's own cubes; nothing where the study asks for none.
@@ -21,7 +24,10 @@ impl Pipeline<'_> {
         if section.chunks == 0 {
             return Ok(Vec::new());
         }
-        self.timed_apart("chunks", |of| chunk_times(of, section.chunks, section.short_iterations))
+        let time = |all: &[Prepared<'_>], progress: &dyn Fn(usize, usize)| {
+            chunk_times(all, section.chunks, section.short_iterations, progress)
+        };
+        self.timed_apart("chunks", time, |of| &of.id)
     }
 
     /// Times every configuration with its object's own cubes from stored samples; nothing where the study does not ask for it.
@@ -30,14 +36,18 @@ impl Pipeline<'_> {
         if !section.stored {
             return Ok(Vec::new());
         }
-        self.timed_apart("stored", |of| stored_times(of, section.chunks, section.short_iterations))
+        let time = |all: &[Prepared<'_>], progress: &dyn Fn(usize, usize)| {
+            stored_times(all, section.chunks, section.short_iterations, progress)
+        };
+        self.timed_apart("stored", time, |of| &of.id)
     }
 
-    /// A stage and a file `bench/NAME/ID.json` for each configuration with its object's own cubes.
+    /// A stage for each object, with a file `bench/NAME/ID.json` for each of its configurations with its own cubes that has times.
     fn timed_apart<T: Serialize>(
         &self,
         name: &'static str,
-        time: impl Fn(&Prepared<'_>) -> Result<Option<T>>,
+        time: impl Fn(&[Prepared<'_>], &dyn Fn(usize, usize)) -> Result<Vec<T>>,
+        id: impl Fn(&T) -> &ConfigurationId,
     ) -> Result<Vec<Stamp>> {
         let section = &self.study.file.benchmark;
         // Another look is the same work once more.
@@ -45,36 +55,43 @@ impl Pipeline<'_> {
             self.study.method(c.id.method).budget.is_none() && !self.study.is_repeated(c.id.method)
         };
         let selected: Vec<&Configuration> = self.selected(&[]).into_iter().filter(is_timed).collect();
-        let step = Step::begin(name, selected.len(), selected.len());
+        let objects: Vec<&[&Configuration]> = selected.chunk_by(|a, b| a.object == b.object).collect();
+        let step = Step::begin(name, objects.len(), objects.len() * TICKS_AN_OBJECT);
         let machine = machine::read();
         let mut stamps = Vec::new();
-        for configuration in selected {
-            let inputs = self
-                .extraction_inputs(configuration, Purpose::Benchmark)?
-                .text("sources", &Inputs::of_sources(source_digests::TIMINGS).finish())
+        for (place, configurations) in objects.into_iter().enumerate() {
+            let object = self.study.object(configurations[0]);
+            let mut inputs = Inputs::of_sources(source_digests::TIMINGS)
                 .value("machine", &machine.lasting())
-                .value("spacing", &self.study.object(configuration).benchmark_spacing)
+                .value("spacing", &object.benchmark_spacing)
                 .value("plan", &(section.chunks, section.short_iterations));
-            let id = &configuration.id;
-            let stamp = self.stage(&format!("{name}/{id}"), inputs, |writer| {
-                let times = time(&self.prepare(configuration, Wanted::For(Purpose::Benchmark))?)?;
-                writer.write_json(&format!("bench/{name}/{id}.json"), &times)
+            for configuration in configurations {
+                let of = self.extraction_inputs(configuration, Purpose::Benchmark)?;
+                inputs = inputs.text("configuration", &of.finish());
+            }
+            let stamp = self.stage(&format!("{name}/{}", object.id), inputs, |writer| {
+                let prepare = |of: &&Configuration| self.prepare(of, Wanted::For(Purpose::Benchmark));
+                let all = configurations.iter().map(prepare).collect::<Result<Vec<_>>>()?;
+                let times = time(&all, &step.within(TICKS_AN_OBJECT))?;
+                times
+                    .iter()
+                    .try_for_each(|of| writer.write_json(&format!("bench/{name}/{}.json", id(of)), of))
             })?;
             step.count(stamp.redone);
-            step.tick(1);
+            step.reach((place + 1) * TICKS_AN_OBJECT);
             stamps.push(stamp);
         }
         step.end();
         Ok(stamps)
     }
 
-    /// The records of stages of [`timed_apart`](Self::timed_apart); nothing of what was not timed.
+    /// The records of stages of [`timed_apart`](Self::timed_apart).
     pub(super) fn times_apart<T: DeserializeOwned>(&self, stamps: &[Stamp]) -> Result<Vec<T>> {
-        let read = |stamp: &Stamp| -> Result<Option<T>> {
-            let file = stamp.file(".json");
-            let text = std::fs::read(self.store.root().join(file)).with_context(|| file.to_owned())?;
-            serde_json::from_slice(&text).with_context(|| file.to_owned())
+        let read = |file: &FileStamp| {
+            let text =
+                std::fs::read(self.store.root().join(&file.path)).with_context(|| file.path.clone())?;
+            serde_json::from_slice(&text).with_context(|| file.path.clone())
         };
-        stamps.iter().filter_map(|stamp| read(stamp).transpose()).collect()
+        stamps.iter().flat_map(|stamp| &stamp.files).map(read).collect()
     }
 }
