@@ -107,14 +107,31 @@ def errors(method):
     return [max(float(row["distance_mean"]), float(row["distance_to_mesh_mean"])) for row in rows]
 
 
+def tied(want, place):
+    """The methods that are not distinguished from the best for a want on an object."""
+    row = next(row for row in csv.DictReader((TO / "choices.csv").open()) if row["want"] == want)
+    names = row[OBJECTS[place]].rsplit(", ", 1)[0].split(" = ")
+    if not names[-1].endswith(" others"):
+        return names
+    # Too many for a cell: the next table names them, for several objects at once.
+    name = {id.split("_")[0]: row["object"] for id, row in table("configurations").items()}[OBJECTS[place]]
+    for row in csv.DictReader((TO / "decision.csv").open()):
+        on = re.split(", | and ", row["objects"])
+        if row["want"] == want and (name in row["objects"] or on == ["every object"]):
+            everywhere, _, somewhere = row["take"].partition("; on some = ")
+            if len(on) > 1 and {"mc", "mc-edge-groups"} & set(somewhere.split(", ")):
+                sys.exit(f"{name}: whether mc is tied for the {want} is not in decision.csv: {row['take']}")
+            return everywhere.split(" = ") + somewhere.split(", ")
+    sys.exit(f"{name}: decision.csv has no row for the {want}")
+
+
 def fastest():
     """That nobody is shown to be faster than these two, if it is so, for whole blocks, chunks and edits."""
-    of = {row["want"]: row for row in csv.DictReader((TO / "choices.csv").open())}
     of_time = ["the shortest time" + what + source for what in ["", " for a chunk", " for an edit"] for source in ["", " from stored samples"]]
     of_time = [want + ", in chunks" if want.endswith("edit") else want for want in of_time]
     for want in of_time:
-        for o in OBJECTS:
-            names = of[want][o].rsplit(", ", 1)[0].split(" = ")
+        for place, o in enumerate(OBJECTS):
+            names = tied(want, place)
             if not {"mc", "mc-edge-groups"} & set(names):
                 sys.exit(f"{o}: the {want} is {names}, and the pages recommend mc and mc-edge-groups")
     return "No other method is shown to be faster on any object."
