@@ -22,7 +22,7 @@ pub(crate) fn mesh_record(
     spacing: f64,
     cells: [u32; 3],
     counts: Counts,
-    mesh: &TriangleMesh,
+    (quality, topology): (Quality, Topology),
     (accuracy, region): (&isostudy_extract::Accuracy, Option<RegionMeasures>),
 ) -> MeshRecord {
     MeshRecord {
@@ -32,13 +32,19 @@ pub(crate) fn mesh_record(
         spacing,
         cells,
         counts,
-        quality: quality(&isostudy_mesh::quality::quality(mesh)),
-        topology: topology(&isostudy_mesh::topology::topology(mesh), mesh),
+        quality,
+        topology,
         accuracy: self::accuracy(accuracy),
         region,
         trilinear: None,
         program: None,
     }
+}
+
+/// What is measured of a mesh alone.
+pub(crate) fn of_mesh(mesh: &TriangleMesh) -> (Quality, Topology) {
+    let of_topology = topology(&isostudy_mesh::topology::topology(mesh), mesh);
+    (quality(&isostudy_mesh::quality::quality(mesh)), of_topology)
 }
 
 pub(crate) fn accuracy(accuracy: &isostudy_extract::Accuracy) -> Accuracy {

@@ -24,6 +24,10 @@ pub(super) fn side_of_plane([a, b, c]: [Vec3; 3], d: Vec3) -> Ordering {
     if volume.abs() > 16.0 * EPSILON * permanent {
         return 0.0_f64.total_cmp(&volume);
     }
+    // Every term has a difference that is 0, as where all four points have one coordinate in common: walls of boxes are full of such.
+    if permanent == 0.0 {
+        return Ordering::Equal;
+    }
     exact_volume([a, b, c, d]).reverse()
 }
 
@@ -57,6 +61,9 @@ pub(super) fn turn_without(axis: usize, [a, b, c]: [Vec3; 3]) -> Ordering {
     let area = left - right;
     if area.abs() > 8.0 * EPSILON * (left.abs() + right.abs()) {
         return area.total_cmp(&0.0);
+    }
+    if left == 0.0 && right == 0.0 {
+        return Ordering::Equal;
     }
     let mut sum = Expansion::default();
     for term in [ax * by, -(ax * cy), -(cx * by), -(ay * bx), ay * cx, cy * bx] {

@@ -8,7 +8,7 @@ use crate::outcome::Outcome;
 use crate::pipeline::Pipeline;
 use crate::prepare::{self, Prepared, Spacings, Wanted, prepare};
 use crate::recipe::{self, Recipe, recipe};
-use crate::records::mesh_record;
+use crate::records::{mesh_record, of_mesh};
 use crate::region;
 use crate::store::Store;
 use crate::terminal::say;
@@ -149,7 +149,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     };
     let region = study.object(configuration).region.as_ref().map(within).transpose()?;
     let measures = (&accuracy, region);
-    let record = mesh_record(&id, Purpose::Benchmark, spacing, prepared.cells()?, counts, &mesh, measures);
+    let record =
+        mesh_record(&id, Purpose::Benchmark, spacing, prepared.cells()?, counts, of_mesh(&mesh), measures);
     let samples = times(&prepared, arguments)?;
     let threads = match arguments.threads {
         0 => std::thread::available_parallelism().map_or(1, |n| n.get() as u32),

@@ -4,7 +4,7 @@ use super::Pipeline;
 use crate::input;
 use crate::made::Made;
 use crate::prepare::{Prepared, Wanted};
-use crate::records::mesh_record;
+use crate::records::{mesh_record, of_mesh};
 use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
 use crate::trilinear_truth::trilinear_truth;
@@ -109,11 +109,16 @@ impl Pipeline<'_> {
             // On one thread, so that calls of the field are counted.
             let execution = Execution { threads: 1 };
             let Made { mesh, counts, program } = self.make(configuration, &prepared, &execution, step)?;
-            let own = Wanted::For(purpose).spacing(object);
-            let (accuracy, region) = self.accuracy(configuration.object, own, &prepared, &mesh)?;
-            let (cells, measures) = (prepared.cells()?, (&accuracy, region));
-            let mut record = mesh_record(&configuration.id, purpose, spacing, cells, counts, &mesh, measures);
-            record.trilinear = trilinear_truth(&prepared, cells);
+            let (own, cells) = (Wanted::For(purpose).spacing(object), prepared.cells()?);
+            // What is measured of the mesh alone takes one thread.
+            let (accuracy, (alone, trilinear)) = rayon::join(
+                || self.accuracy(configuration.object, own, &prepared, &mesh),
+                || (of_mesh(&mesh), trilinear_truth(&prepared, cells)),
+            );
+            let (accuracy, region) = accuracy?;
+            let measures = (&accuracy, region);
+            let mut record = mesh_record(&configuration.id, purpose, spacing, cells, counts, alone, measures);
+            record.trilinear = trilinear;
             record.program = program;
             // The indexed variant is only measured: nothing is rendered from it.
             if purpose != Purpose::Indexed {

@@ -6,7 +6,7 @@ use crate::pipeline::meshes::TICKS_A_MESH;
 use crate::pipeline::{Meshes, Pipeline};
 use crate::prepare::{Prepared, Wanted};
 use crate::recipe::Recipe;
-use crate::records::mesh_record;
+use crate::records::{mesh_record, of_mesh};
 use crate::store::{Stamp, Writer};
 use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
@@ -108,7 +108,8 @@ impl Pipeline<'_> {
                         let cells = prepared.cells()?;
                         let purpose = Purpose::Stimulus;
                         let measures = (&accuracy, region);
-                        let record = mesh_record(id, purpose, spacing, cells, counts, &mesh, measures);
+                        let record =
+                            mesh_record(id, purpose, spacing, cells, counts, of_mesh(&mesh), measures);
                         entry.mesh = Some(MeshRecord { program, ..record });
                         self.write_level(&prepared, &mesh, &path, writer)?;
                     }
