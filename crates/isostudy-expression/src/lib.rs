@@ -114,6 +114,25 @@ impl FromStr for Expression {
     }
 }
 
+impl Expression {
+    /// The values where `fill` puts columns of x, y and z.
+    fn sample_columns(&self, values: &mut [f32], fill: impl FnOnce(&mut [Vec<f32>])) {
+        WORKSPACE.with_borrow_mut(|Workspace { evaluator, columns }| {
+            let count = 3 + self.noises.len();
+            columns.resize_with(columns.len().max(count), Vec::new);
+            columns[..3].iter_mut().for_each(Vec::clear);
+            fill(&mut columns[..3]);
+            for (i, noise) in self.noises.iter().enumerate() {
+                let Some((arguments, noise)) = noise else { continue };
+                let found = arguments.eval(columns, evaluator);
+                let places = [0, 1, 2].map(|axis| &found[axis][..values.len()]);
+                noise_call::values(noise, places, &mut columns[3 + i]);
+            }
+            values.copy_from_slice(&self.value.eval(columns, evaluator)[0]);
+        });
+    }
+}
+
 impl fmt::Debug for Expression {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Expression").field(&self.text).finish()
@@ -147,22 +166,18 @@ impl StudyField for Expression {
     }
 
     fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
-        WORKSPACE.with_borrow_mut(|Workspace { evaluator, columns }| {
-            let count = 3 + self.noises.len();
-            columns.resize_with(columns.len().max(count), Vec::new);
-            columns[0].clear();
+        self.sample_columns(values, |columns| {
             columns[0].extend_from_slice(x);
-            for (axis, value) in [(1, y), (2, z)] {
-                columns[axis].clear();
-                columns[axis].resize(x.len(), value);
+            columns[1].resize(x.len(), y);
+            columns[2].resize(x.len(), z);
+        });
+    }
+
+    fn sample_near(&self, points: &[Vec3], values: &mut [f32], _before: Option<(Vec3, f32)>) {
+        self.sample_columns(values, |columns| {
+            for (axis, column) in columns.iter_mut().enumerate() {
+                column.extend(points.iter().map(|p| p[axis]));
             }
-            for (i, noise) in self.noises.iter().enumerate() {
-                let Some((arguments, noise)) = noise else { continue };
-                let found = arguments.eval(columns, evaluator);
-                let places = [0, 1, 2].map(|axis| &found[axis][..values.len()]);
-                noise_call::values(noise, places, &mut columns[3 + i]);
-            }
-            values.copy_from_slice(&self.value.eval(columns, evaluator)[0]);
         });
     }
 

@@ -70,6 +70,11 @@ impl StudyField for Counted<'_> {
         self.field.sample_row_after(x, y, z, values, before);
     }
 
+    fn sample_near(&self, points: &[Vec3], values: &mut [f32], before: Option<(Vec3, f32)>) {
+        self.count(values.len());
+        self.field.sample_near(points, values, before);
+    }
+
     fn values_at_once(&self) -> usize {
         self.field.values_at_once()
     }

@@ -93,6 +93,16 @@ pub trait StudyField: Sync {
         self.sample_row(x, y, z, values);
     }
 
+    /// The values at some points near each other into `values`, where the value at a point nearby may be known already.
+    ///
+    /// Must agree with [`sample`](Self::sample) to the bit; override it only to share work between the points. The two slices have the
+    /// same length.
+    fn sample_near(&self, points: &[Vec3], values: &mut [f32], before: Option<(Vec3, f32)>) {
+        for (value, &p) in values.iter_mut().zip(points) {
+            *value = self.sample_after(p, before);
+        }
+    }
+
     /// How many values of a row to ask for at once near the surface. More take less time each where a row shares work, and some of
     /// them turn out not to be needed.
     fn values_at_once(&self) -> usize {
@@ -161,6 +171,10 @@ where
 
     fn sample_row_after(&self, x: &[f32], y: f32, z: f32, values: &mut [f32], before: Option<(Vec3, f32)>) {
         (**self).sample_row_after(x, y, z, values, before);
+    }
+
+    fn sample_near(&self, points: &[Vec3], values: &mut [f32], before: Option<(Vec3, f32)>) {
+        (**self).sample_near(points, values, before);
     }
 
     fn values_at_once(&self) -> usize {

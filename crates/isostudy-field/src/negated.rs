@@ -30,6 +30,11 @@ impl<F: StudyField> StudyField for Negated<F> {
         values.iter_mut().for_each(|v| *v = -*v);
     }
 
+    fn sample_near(&self, points: &[Vec3], values: &mut [f32], before: Option<(Vec3, f32)>) {
+        self.0.sample_near(points, values, before.map(|(q, v)| (q, -v)));
+        values.iter_mut().for_each(|v| *v = -*v);
+    }
+
     fn values_at_once(&self) -> usize {
         self.0.values_at_once()
     }

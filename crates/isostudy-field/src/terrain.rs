@@ -331,6 +331,27 @@ impl Terrain {
         (p.as_dvec3() - self.origin) / self.width
     }
 
+    /// The values at points by number.
+    fn sample_many(&self, point: impl Fn(usize) -> Vec3, values: &mut [f32]) {
+        if values.len() < FEW {
+            for (i, value) in values.iter_mut().enumerate() {
+                *value = self.sample(point(i));
+            }
+            return;
+        }
+        let (mut places, mut found) = ([DVec3::ZERO; ROW], [0.0; ROW]);
+        for (part, values) in values.chunks_mut(ROW).enumerate() {
+            let point = |i: usize| point(part * ROW + i);
+            for (i, place) in places[..values.len()].iter_mut().enumerate() {
+                *place = self.place(point(i));
+            }
+            self.values(&places[..values.len()], &mut found[..values.len()]);
+            for (i, value) in values.iter_mut().enumerate() {
+                *value = self.rounded(point(i), found[i]);
+            }
+        }
+    }
+
     /// In the unit of the coordinates, from a value in widths.
     fn rounded(&self, p: Vec3, value: f64) -> f32 {
         // The least of a number and none is the number.
@@ -368,22 +389,11 @@ impl StudyField for Terrain {
 
     /// Noise is looked up cell by cell, of which a row has several points.
     fn sample_row(&self, x: &[f32], y: f32, z: f32, values: &mut [f32]) {
-        if x.len() < FEW {
-            for (value, &x) in values.iter_mut().zip(x) {
-                *value = self.sample(Vec3::new(x, y, z));
-            }
-            return;
-        }
-        let (mut places, mut found) = ([DVec3::ZERO; ROW], [0.0; ROW]);
-        for (x, values) in x.chunks(ROW).zip(values.chunks_mut(ROW)) {
-            for (place, &x) in places.iter_mut().zip(x) {
-                *place = self.place(Vec3::new(x, y, z));
-            }
-            self.values(&places[..x.len()], &mut found[..x.len()]);
-            for ((value, &x), &found) in values.iter_mut().zip(x).zip(&found) {
-                *value = self.rounded(Vec3::new(x, y, z), found);
-            }
-        }
+        self.sample_many(|i| Vec3::new(x[i], y, z), values);
+    }
+
+    fn sample_near(&self, points: &[Vec3], values: &mut [f32], _before: Option<(Vec3, f32)>) {
+        self.sample_many(|i| points[i], values);
     }
 
     fn values_at_once(&self) -> usize {

@@ -67,6 +67,13 @@ impl<F: StudyField> StudyField for Walled<F> {
         }
     }
 
+    fn sample_near(&self, points: &[Vec3], values: &mut [f32], before: Option<(Vec3, f32)>) {
+        self.field.sample_near(points, values, self.known(before));
+        for (value, &p) in values.iter_mut().zip(points) {
+            *value = self.walled(p, *value);
+        }
+    }
+
     fn values_at_once(&self) -> usize {
         self.field.values_at_once()
     }

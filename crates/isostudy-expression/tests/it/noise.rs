@@ -43,6 +43,13 @@ fn assert_same(text: &str, of: impl Fn(DVec3) -> f64) {
     for (x, value) in x.into_iter().zip(values) {
         assert_eq!(value.to_bits(), field.sample(Vec3::new(x, 0.4, -0.9)).to_bits(), "{text}");
     }
+    // And of points near each other.
+    let points: Vec<Vec3> = places().collect();
+    let mut values = vec![0.0; points.len()];
+    field.sample_near(&points, &mut values, None);
+    for (p, value) in points.into_iter().zip(values) {
+        assert_eq!(value.to_bits(), field.sample(p).to_bits(), "{text} at {p}");
+    }
 }
 
 #[test]

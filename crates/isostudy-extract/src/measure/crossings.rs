@@ -1,6 +1,6 @@
 //! Points of an isosurface, evenly in its area: where straight lines cross it.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use isostudy_mesh::Bounds;
 
 use crate::execution::threads::mapped;
@@ -50,7 +50,8 @@ pub(crate) fn crossings(level: &Level, bounds: &Bounds, wanted: impl Fn(f64) -> 
         let lines = Lines::through(&bounds, count as usize);
         let per_row = mapped(&lines.rows(), |row| {
             let mut points = Vec::new();
-            lines.of(row).for_each(|line| along(level, &cells, &line, &mut points));
+            let mut samples = Samples::default();
+            lines.of(row).for_each(|line| along(level, &cells, &line, &mut samples, &mut points));
             points
         });
         let points = per_row.concat();
@@ -65,21 +66,49 @@ pub(crate) fn crossings(level: &Level, bounds: &Bounds, wanted: impl Fn(f64) -> 
     }
 }
 
+/// Points of a line, and the field's differences from the isovalue there.
+#[derive(Default)]
+struct Samples {
+    points: Vec<Vec3>,
+    differences: Vec<f32>,
+}
+
+impl Samples {
+    /// Fills them with the ends of so many steps.
+    fn fill(&mut self, level: &Level, steps: usize, at: impl Fn(f64) -> Vec3) {
+        self.points.clear();
+        self.points.extend((0..=steps).map(|step| at(step as f64)));
+        self.differences.resize(steps + 1, 0.0);
+        level.field.sample_near(&self.points, &mut self.differences, None);
+        self.differences.iter_mut().for_each(|value| *value -= level.isovalue);
+    }
+}
+
 /// All crossings along a line.
-fn along(level: &Level, cells: &CellsWithSurface, line: &Line, points: &mut Vec<DVec3>) {
+fn along(
+    level: &Level,
+    cells: &CellsWithSurface,
+    line: &Line,
+    samples: &mut Samples,
+    points: &mut Vec<DVec3>,
+) {
     let at = |way: f64| (line.from + line.direction * way).as_vec3();
     let value = |way: f64| f64::from(level.difference(at(way)));
     cells.parts_of(line, |from, to| {
         let steps = ((to - from) / (STEP * f64::from(level.spacing))).ceil().max(1.0);
         let length = (to - from) / steps;
         let place = |step: f64| from + step * length;
-        let (mut before, mut low) = (None::<f64>, value(from));
-        let mut high = value(place(1.0));
+        samples.fill(level, steps as usize, |step| at(place(step)));
+        let found = |step: u64| samples.differences.get(step as usize).copied().map(f64::from);
+        let mut before = None::<f64>;
         for step in 1..=steps as u64 {
-            let after = (step < steps as u64).then(|| value(place(step as f64 + 1.0)));
+            let [low, high] = [step - 1, step].map(|step| found(step).unwrap_or(f64::NAN));
             // The steepest of this step and its neighbours.
-            let rises =
-                [before.map(|before| low - before), Some(high - low), after.map(|after| after - high)];
+            let rises = [
+                before.map(|before| low - before),
+                Some(high - low),
+                found(step + 1).map(|after| after - high),
+            ];
             let steepness = rises.into_iter().flatten().map(|rise| rise.abs() / length).fold(0.0, f64::max);
             let ends = [(place(step as f64 - 1.0), low), (place(step as f64), high)];
             between(&value, ends, steepness, HALVINGS, &mut |ends| {
@@ -87,8 +116,7 @@ fn along(level: &Level, cells: &CellsWithSurface, line: &Line, points: &mut Vec<
                     root(&value, ends, TOLERANCE * f64::from(level.spacing)).map(|way| at(way).as_dvec3()),
                 );
             });
-            (before, low) = (Some(low), high);
-            high = after.unwrap_or(f64::NAN);
+            before = Some(low);
         }
     });
 }

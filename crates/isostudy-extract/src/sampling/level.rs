@@ -39,14 +39,18 @@ impl Level<'_> {
     pub(crate) fn gradient(&self, p: Vec3, difference: f32) -> DVec3 {
         let step = self.spacing * STENCIL;
         let near = Some((p, difference + self.isovalue));
+        // By axis, the lower point first.
+        let points: [Vec3; 6] = std::array::from_fn(|i| {
+            let mut there = p;
+            there[i / 2] += if i % 2 == 0 { -step } else { step };
+            there
+        });
+        let mut values = [0.0; 6];
+        self.field.sample_near(&points, &mut values, near);
         let slope = |axis: usize| {
-            let (mut low, mut high) = (p, p);
-            low[axis] -= step;
-            high[axis] += step;
-            let change = f64::from(self.field.sample_after(high, near))
-                - f64::from(self.field.sample_after(low, near));
+            let change = f64::from(values[2 * axis + 1]) - f64::from(values[2 * axis]);
             // The step as it is after rounding.
-            change / (f64::from(high[axis]) - f64::from(low[axis]))
+            change / (f64::from(points[2 * axis + 1][axis]) - f64::from(points[2 * axis][axis]))
         };
         DVec3::new(slope(0), slope(1), slope(2))
     }

@@ -203,4 +203,19 @@ proptest! {
             prop_assert_eq!(value.to_bits(), alone.to_bits(), "{} at x = {}", value, x);
         }
     }
+
+    #[test]
+    fn points_near_each_other_have_their_samples_to_the_bit(
+        settings in settings(),
+        points in prop::collection::vec(prop::array::uniform3(-1.5f32..1.5), 0..150),
+        apart in prop::sample::select(vec![1.0f32, 0.02, 1e-4]),
+    ) {
+        let field = terrain(settings);
+        let points: Vec<Vec3> = points.into_iter().map(|p| Vec3::splat(0.1) + apart * Vec3::from_array(p)).collect();
+        let mut values = vec![0.0; points.len()];
+        field.sample_near(&points, &mut values, None);
+        for (&p, value) in points.iter().zip(values) {
+            prop_assert_eq!(value.to_bits(), field.sample(p).to_bits(), "at {}", p);
+        }
+    }
 }
