@@ -143,7 +143,9 @@ impl Step {
             Self::Coplanar { tolerance } => whole(coplanar::coplanar(mesh, tolerance)),
             Self::Decimate { triangles, ratio, error, lock_borders } => {
                 let count = mesh.triangles.len();
-                let share = |ratio: f64| (ratio * count as f64).floor() as u64;
+                // A chunk may have a triangle or two of a surface that is large elsewhere.
+                let least = u64::from(extent == Extent::Chunk);
+                let share = |ratio: f64| ((ratio * count as f64).floor() as u64).max(least);
                 if let Some(ratio) = ratio.filter(|ratio| share(*ratio) == 0) {
                     return Err(FinishError::Nothing { ratio, triangles: count });
                 }
@@ -262,6 +264,10 @@ mod tests {
         let least = Step::Decimate { triangles: None, ratio: Some(1e-9), error: None, lock_borders: false };
         let error = least.apply(&mesh, Extent::Whole).unwrap_err();
         assert_eq!(error.to_string(), "ratio = 1e-9 of 512 triangles is less than one triangle");
+        // A chunk keeps what little it has.
+        let mut corner = sheet(1);
+        corner.triangles.truncate(1);
+        assert_eq!(half.apply(&corner, Extent::Chunk).unwrap().mesh.triangles.len(), 1);
     }
 
     #[test]
