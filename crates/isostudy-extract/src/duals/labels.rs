@@ -6,6 +6,10 @@
 //!
 //! Two layers of labels and the vertex numbers of two layers of cells are held at a time.
 
+mod chunk;
+
+pub use chunk::{LabelChunk, weld_label_chunks};
+
 use std::collections::{BTreeMap, TryReserveError};
 
 use glam::Vec3;
@@ -15,6 +19,7 @@ use super::quads::{CORNERS, Quadrilateral};
 use super::relaxed::{MOST_SMOOTHING, relax_positions};
 use crate::execution::control::Control;
 use crate::extraction::ExtractError;
+use crate::lattice::CellBox;
 use crate::memory::{filled, push};
 use crate::surface::space::Space;
 use crate::wording::in_words;
@@ -110,6 +115,13 @@ pub enum LabelError {
     },
     /// The background was chosen.
     Background,
+    /// Cells beyond those of the volume, which begin at the first label, or with background beyond the volume one before it.
+    Beyond {
+        /// As given.
+        cells: CellBox,
+        /// Those that there are.
+        all: CellBox,
+    },
     /// More steps than there may be.
     Smoothing {
         /// As given.
@@ -129,6 +141,8 @@ in_words! {
         Self::TooMany => "more than {MOST_LABELS} different labels: are these densities?";
         Self::Absent { label, known } => "no sample has the label {label}; labels are {}", few(known);
         Self::Background => "label {BACKGROUND} is the background, which is there always; choose others";
+        Self::Beyond { cells, all } =>
+            "cells {:?} to {:?} are not all of the volume's, {:?} to {:?}", cells.start, cells.end, all.start, all.end;
         Self::Smoothing { smoothing } => "smoothing = {smoothing}: must be from 0 to {MOST_SMOOTHING}, steps";
         Self::Extract(error) => "{error}";
     }
@@ -161,6 +175,15 @@ impl LabelVolume<'_> {
         settings: &LabelSettings,
         control: impl Into<Control<'c>>,
     ) -> Result<LabelSurface, LabelError> {
+        let space = self.check(settings)?;
+        let counted = counted(self.labels, settings)?;
+        let net = Net::of(self, settings);
+        let crossings = net.crossings(&control.into(), settings.smoothing, &space)?;
+        Ok(LabelSurface { labelled: crossings.labelled, counts: counted, crossings: crossings.count })
+    }
+
+    /// What is wrong with the volume or the settings, whatever the labels are.
+    fn check(&self, settings: &LabelSettings) -> Result<Space, LabelError> {
         let Self { counts, labels, origin, steps } = *self;
         let smoothing = settings.smoothing;
         if smoothing > MOST_SMOOTHING {
@@ -172,22 +195,7 @@ impl LabelVolume<'_> {
         if labels.len() != counts.iter().product::<usize>() {
             return Err(LabelError::Count { given: labels.len(), counts });
         }
-        let space = Space::try_new(origin, steps).ok_or(LabelError::Steps { steps, origin })?;
-        let counted = counted(labels, settings)?;
-        let control = control.into();
-        let mut net = Net::new(self, settings);
-        net.fill(&control)?;
-        let Net { positions, cells, triangles, sides, crossings, .. } = net;
-        let mut mesh = TriangleMesh { positions, triangles, normals: Vec::new() };
-        if smoothing > 0 {
-            let cell = |v: usize| {
-                let low = Vec3::from_array(cells[v].map(|i| i as f32));
-                [low, low + 1.0]
-            };
-            relax_positions(&control, smoothing, &mut mesh, cell)?;
-        }
-        space.place(&mut mesh);
-        Ok(LabelSurface { labelled: LabelledMesh { mesh, sides }, counts: counted, crossings })
+        Space::try_new(origin, steps).ok_or(LabelError::Steps { steps, origin })
     }
 }
 
@@ -232,13 +240,27 @@ struct Net<'a> {
     border: usize,
     /// Samples along each axis, those beyond the volume included.
     size: [usize; 3],
+    /// The first samples that are looked at, and how many along each axis.
+    first: [usize; 3],
+    window: [usize; 3],
     positions: Vec<Vec3>,
-    /// The lowest corner of each vertex's cell; only where vertices will be moved.
-    cells: Vec<[i64; 3]>,
+    /// The lowest corner of each vertex's cell; only where they are needed.
+    cells: Vec<[i32; 3]>,
     keeps_cells: bool,
     triangles: Vec<[u32; 3]>,
     sides: Vec<[u32; 2]>,
+    /// The number of each quadrilateral's edge; only where they are needed.
+    edges: Vec<u64>,
+    keeps_edges: bool,
     crossings: u64,
+}
+
+/// A net in space.
+struct Placed {
+    labelled: LabelledMesh,
+    cells: Vec<[i32; 3]>,
+    edges: Vec<u64>,
+    count: u64,
 }
 
 /// What is in sight of a layer of points: its labels and the next layer's, and the vertices of the cells below and above it.
@@ -268,24 +290,46 @@ const EDGES: [(usize, usize); 12] = {
 };
 
 impl<'a> Net<'a> {
-    fn new(volume: &'a LabelVolume, settings: &LabelSettings<'a>) -> Self {
+    /// Of the whole volume.
+    fn of(volume: &'a LabelVolume, settings: &LabelSettings<'a>) -> Self {
         let border = usize::from(settings.close);
+        let size = volume.counts.map(|n| n + 2 * border);
         Self {
             volume,
             only: settings.only,
             border,
-            size: volume.counts.map(|n| n + 2 * border),
+            size,
+            first: [0; 3],
+            window: size,
             positions: Vec::new(),
             cells: Vec::new(),
             keeps_cells: settings.smoothing > 0,
             triangles: Vec::new(),
             sides: Vec::new(),
+            edges: Vec::new(),
+            keeps_edges: false,
             crossings: 0,
         }
     }
 
+    /// Makes the net, smooths it and takes it to space.
+    fn crossings(mut self, control: &Control, smoothing: u32, space: &Space) -> Result<Placed, ExtractError> {
+        self.fill(control)?;
+        let Self { positions, cells, triangles, sides, edges, crossings, .. } = self;
+        let mut mesh = TriangleMesh { positions, triangles, normals: Vec::new() };
+        if smoothing > 0 {
+            let cell = |v: usize| {
+                let low = Vec3::from_array(cells[v].map(|i| i as f32));
+                [low, low + 1.0]
+            };
+            relax_positions(control, smoothing, &mut mesh, cell)?;
+        }
+        space.place(&mut mesh);
+        Ok(Placed { labelled: LabelledMesh { mesh, sides }, cells, edges, count: crossings })
+    }
+
     fn fill(&mut self, control: &Control) -> Result<(), ExtractError> {
-        let [nx, ny, nz] = self.size;
+        let [nx, ny, nz] = self.window;
         let layer = || filled(nx * ny, NONE);
         let mut sight = Sight { here: layer()?, next: layer()?, below: layer()?, above: layer()? };
         self.read(0, &mut sight.next);
@@ -307,13 +351,16 @@ impl<'a> Net<'a> {
 
     /// The labels of a layer of points.
     fn read(&self, z: usize, layer: &mut [u32]) {
-        let [nx, ..] = self.size;
+        let [nx, ..] = self.window;
         let [cx, cy, cz] = self.volume.counts;
         layer.fill(BACKGROUND);
-        let Some(z) = z.checked_sub(self.border).filter(|&z| z < cz) else { return };
-        for (y, row) in self.volume.labels[z * cx * cy..][..cx * cy].chunks_exact(cx).enumerate() {
-            let start = (y + self.border) * nx + self.border;
-            for (to, &label) in layer[start..start + cx].iter_mut().zip(row) {
+        let within = |at: usize, count: usize| at.checked_sub(self.border).filter(|&at| at < count);
+        let Some(z) = within(self.first[2] + z, cz) else { return };
+        let (from, to) = (self.first[0].max(self.border), (self.first[0] + nx).min(cx + self.border));
+        for (y, row) in layer.chunks_exact_mut(nx).enumerate() {
+            let Some(y) = within(self.first[1] + y, cy).filter(|_| from < to) else { continue };
+            let labels = &self.volume.labels[(z * cy + y) * cx..][from - self.border..to - self.border];
+            for (to, &label) in row[from - self.first[0]..].iter_mut().zip(labels) {
                 *to = chosen(label, self.only);
             }
         }
@@ -321,7 +368,7 @@ impl<'a> Net<'a> {
 
     /// Gives each cell of a layer a vertex that has more than one label and a quadrilateral.
     fn vertices(&mut self, z: usize, sight: &mut Sight) -> Result<(), ExtractError> {
-        let [nx, ny, _] = self.size;
+        let [nx, ny, _] = self.window;
         for y in 0..ny - 1 {
             let rows = [
                 &sight.here[y * nx..],
@@ -331,7 +378,7 @@ impl<'a> Net<'a> {
             ];
             for x in 0..nx - 1 {
                 let corners: [u32; 8] = std::array::from_fn(|c| rows[c >> 1][x + (c & 1)]);
-                let cell = [x, y, z];
+                let cell = [0, 1, 2].map(|axis| self.first[axis] + [x, y, z][axis]);
                 sight.above[y * nx + x] = match self.mean(cell, &corners) {
                     None => NONE,
                     Some(place) => {
@@ -339,7 +386,7 @@ impl<'a> Net<'a> {
                         if number == NONE {
                             return Err(ExtractError::TooManyVertices { limit: NONE });
                         }
-                        let low = cell.map(|i| i as i64 - self.border as i64);
+                        let low = cell.map(|i| i as i32 - self.border as i32);
                         push(&mut self.positions, Vec3::from_array(low.map(|i| i as f32)) + place)?;
                         if self.keeps_cells {
                             push(&mut self.cells, low)?;
@@ -378,15 +425,21 @@ impl<'a> Net<'a> {
         (0..3).all(|a| a == axis || (0 < place[a] && place[a] + 1 < self.size[a]))
     }
 
+    /// Whether the four cells round the edge that begins at a point are all looked at.
+    fn is_in_sight(&self, place: [usize; 3], axis: usize) -> bool {
+        let is_within = |a: usize| self.first[a] < place[a] && place[a] + 1 < self.first[a] + self.window[a];
+        (0..3).all(|a| a == axis || is_within(a))
+    }
+
     /// The quadrilaterals round the edges that begin in a layer of points.
     fn quadrilaterals(&mut self, z: usize, sight: &Sight) -> Result<(), TryReserveError> {
-        let [nx, ny, nz] = self.size;
+        let [nx, ny, _] = self.window;
         for y in 0..ny {
             for x in 0..nx {
-                let (place, at) = ([x, y, z], y * nx + x);
+                let (at, from) = (y * nx + x, [x, y, z]);
                 let here = sight.here[at];
                 for axis in 0..3 {
-                    if place[axis] + 1 == [nx, ny, nz][axis] {
+                    if from[axis] + 1 == self.window[axis] {
                         continue;
                     }
                     let there = if axis == 2 { sight.next[at] } else { sight.here[at + [1, nx][axis]] };
@@ -394,11 +447,17 @@ impl<'a> Net<'a> {
                         continue;
                     }
                     self.crossings += 1;
-                    if self.is_shared(place, axis) {
-                        self.quadrilateral(place, axis, here > there, sight)?;
+                    let place = [0, 1, 2].map(|axis| self.first[axis] + from[axis]);
+                    if self.is_in_sight(place, axis) {
+                        self.quadrilateral(from, axis, here > there, sight)?;
                         let sides = [here.max(there), here.min(there)];
                         self.sides.try_reserve(2)?;
                         self.sides.extend([sides; 2]);
+                        if self.keeps_edges {
+                            let [px, py, pz] = place.map(|i| i as u64);
+                            let [sx, sy, _] = self.size.map(|n| n as u64);
+                            push(&mut self.edges, 3 * ((pz * sy + py) * sx + px) + axis as u64)?;
+                        }
                     }
                 }
             }
@@ -406,6 +465,7 @@ impl<'a> Net<'a> {
         Ok(())
     }
 
+    /// That round the edge which begins at a point of the window.
     fn quadrilateral(
         &mut self,
         place: [usize; 3],
@@ -413,7 +473,7 @@ impl<'a> Net<'a> {
         leads_out: bool,
         sight: &Sight,
     ) -> Result<(), TryReserveError> {
-        let [nx, ..] = self.size;
+        let [nx, ..] = self.window;
         let corners = std::array::from_fn(|cell| {
             // As many steps back as the corner of the cell that the edge begins at is forward.
             let corner = usize::from(CORNERS[axis][cell]);
