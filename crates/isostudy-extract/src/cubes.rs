@@ -7,6 +7,7 @@
 
 mod cells_pass;
 pub(crate) mod continuation;
+mod creased;
 mod exact;
 pub(crate) mod grid;
 mod moved;
@@ -22,6 +23,7 @@ pub(crate) mod vertices;
 
 pub(crate) use continuation::Continued;
 pub use continuation::{ContinuedCells, Seeds, SeedsError};
+pub(crate) use creased::Creases;
 pub(crate) use moved::EdgeMoves;
 pub use rule::{Diagonals, Faces, Flat};
 

@@ -5,6 +5,8 @@
 //! Where two cells share a face on which each of them has one loop through all four crossings, an edge would have four
 //! quadrilaterals: there both cells join the inside corners of that face instead (Wenger 2013), which cuts each loop in two.
 //!
+//! With vertices in the middle of their cells the surface is that of blocks round the samples.
+//!
 //! With tangent planes a vertex is where those of the field at the crossings meet (dual contouring; Ju, Losasso, Schaefer & Warren 2002).
 //!
 //! It streams: sides; a layer behind, samples; another behind, the vertices of a layer of cells; then the quadrilaterals of the edges
@@ -14,15 +16,19 @@ mod labels;
 mod octree;
 mod plan;
 mod quads;
+mod rectangles;
 mod relaxed;
 mod sharp;
 mod tangents;
 mod vertices;
 
-pub use labels::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
+pub use labels::{
+    LabelChunk, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume, weld_label_chunks,
+};
 pub(crate) use quads::{ROUND, is_other_better};
 pub(crate) use relaxed::MOST_SMOOTHING;
 pub(crate) use sharp::Sharp;
+pub(crate) use tangents::{Tangent, tangent};
 
 use std::collections::{HashMap, TryReserveError};
 use std::ops::Range;
@@ -52,6 +58,17 @@ pub(crate) struct Nets {
     pub(crate) smoothing: u32,
     /// How far vertices may be from tangent planes, in spacings, when cells become larger ones; 0 if they do not.
     pub(crate) tolerance: f32,
+    /// Vertices in the middle of their cells, whatever the samples are.
+    pub(crate) blocks: Option<Blocks>,
+}
+
+/// What becomes of the squares between blocks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Blocks {
+    /// Each stays.
+    Single,
+    /// Those of one plane become rectangles.
+    Merged,
 }
 
 /// The stages in order, timed and counted. The lattice is simple cubic.
@@ -62,7 +79,8 @@ pub(crate) fn extract(
 ) -> Result<(), ExtractError> {
     let Nets { sharp, smoothing, tolerance, .. } = nets;
     let sharp_and_merged = sharp.filter(|_| tolerance > 0.0);
-    if smoothing == 0 && sharp_and_merged.is_none() {
+    let are_squares_merged = nets.blocks == Some(Blocks::Merged);
+    if smoothing == 0 && sharp_and_merged.is_none() && !are_squares_merged {
         return extract_unmoved(buffers, nets, run);
     }
     // The trace says which cell a vertex is of.
@@ -73,13 +91,14 @@ pub(crate) fn extract(
     extract_unmoved(buffers, nets, run)?;
     match sharp_and_merged {
         Some(sharp) => octree::simplify(request, sharp, tolerance, trace, extraction),
+        None if are_squares_merged => rectangles::merge(trace, extraction),
         None => relaxed::relax(request, smoothing, trace, extraction),
     }
 }
 
 fn extract_unmoved(
     (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
-    Nets { patches, sharp, .. }: Nets,
+    Nets { patches, sharp, blocks, .. }: Nets,
     run: Run,
 ) -> Result<(), ExtractError> {
     let (request, table) = (run.request, Table::get(patches));
@@ -89,7 +108,12 @@ fn extract_unmoved(
     let by_planes = sharp.zip(request.level());
     let (source, isovalue) = (request.source, request.settings.isovalue);
     let sampling = Sampling { grid: &grid, source, isovalue, all_corners: false };
-    kept.stream(&Net { sampling, table, by_planes, placer }, 1, workspaces, run)?;
+    kept.stream(
+        &Net { sampling, table, by_planes, placer, in_middle: blocks.is_some() },
+        1,
+        workspaces,
+        run,
+    )?;
     kept.keep(grid);
     Ok(())
 }
@@ -100,6 +124,8 @@ struct Net<'a> {
     table: &'static Table,
     by_planes: Option<(Sharp, Level<'a>)>,
     placer: Placer<'a>,
+    /// Whether vertices are in the middle of their cells.
+    in_middle: bool,
 }
 
 /// Buffers of one thread.
@@ -166,10 +192,10 @@ impl Net<'_> {
     }
 
     fn place(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
-        let Self { sampling: Sampling { grid, source, .. }, by_planes, ref placer, .. } = *self;
+        let Self { sampling: Sampling { grid, source, .. }, by_planes, ref placer, in_middle, .. } = *self;
         let Workspace { samples, records, plans, tangents } = &mut *slab.workspace;
         let plans = plans.as_mut().expect("there is room for it");
-        let pass = VertexPass { grid, samples, values: samples.values(grid, source), placer };
+        let pass = VertexPass { grid, samples, values: samples.values(grid, source), placer, in_middle };
         if layer == lowest_numbered(&slab.own) {
             tangents.iter_mut().for_each(HashMap::clear);
         }

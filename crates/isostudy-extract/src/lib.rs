@@ -6,7 +6,9 @@
 //! | marching cubes | [`Cubes`] | a polygon for each loop of surface round a cube |
 //! | snapped cubes | [`SnapCubes`] | the same, with crossings drawn to lattice points: no thin triangles |
 //! | Macet | [`Macet`] | the same, with vertices moved to where edges stand square on the surface |
+//! | cubical marching squares | [`CubicalMarchingSquares`] | the same, with vertices on creases: sharp edges, and no intersections |
 //! | surface nets | [`SurfaceNets`] | the dual: a vertex in each cube, a quadrilateral round each crossed edge |
+//! | blocks | [`Blocky`] | the same connections, with vertices half way between samples: squares, or rectangles |
 //! | dual contouring | [`DualContouring`] | the same, with vertices where tangent planes meet: sharp edges |
 //! | continuation | [`Continuation`] | cubes or tetrahedra, from cube to cube, beginning at seeds |
 //! | labels | [`LabelVolume`] | surface nets between the regions of a volume of whole numbers |
@@ -231,7 +233,9 @@ pub use chunks::{
 #[cfg(feature = "stage-clock")]
 pub use clock::set_stage_clock;
 pub use cubes::{ContinuedCells, Diagonals, Faces, Flat, Seeds, SeedsError};
-pub use duals::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
+pub use duals::{
+    LabelChunk, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume, weld_label_chunks,
+};
 pub use execution::{Control, Jobs, Threads};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::Extractor;

@@ -93,8 +93,12 @@ families! {
     SnapCubes = "snap-cubes" in snap_cubes,
     /// Marching cubes with edges turned square to the surface.
     Macet = "macet" in macet,
+    /// Cubical marching squares: marching cubes with vertices on creases.
+    CubicalMarchingSquares = "cubical-marching-squares" in cubical_marching_squares,
     /// Surface nets, the dual of marching cubes.
     SurfaceNets = "surface-nets" in surface_nets,
+    /// Blocks round samples.
+    Blocky = "blocky" in blocky,
     /// Dual contouring: surface nets with vertices where tangent planes meet.
     DualContouring = "dual-contouring" in dual_contouring,
     /// Marching cubes, or tetrahedra, from cube to cube beginning at seeds.

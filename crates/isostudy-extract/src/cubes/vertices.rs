@@ -187,7 +187,7 @@ pub(crate) fn corner_of([x, y, z]: [usize; 3], corner: u8) -> [usize; 3] {
 /// would lie in its place. As far off as the end's last place, or that of the edge's length if it is larger. Points of three edges of a
 /// cube that are no corners never lie in a line, so no triangle is without area.
 #[inline(always)]
-fn within(from: f32, to: f32, ratio: f64) -> f32 {
+pub(super) fn within(from: f32, to: f32, ratio: f64) -> f32 {
     let way = to - from;
     let off = |end: f32| (f32::EPSILON * end.abs().max(way)).min(MOST_OFF * way);
     let at = (f64::from(from) + (f64::from(to) - f64::from(from)) * ratio) as f32;

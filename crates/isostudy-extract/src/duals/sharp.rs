@@ -27,7 +27,7 @@ struct Distances {
 impl Sharp {
     /// The point of crossings and unit normals at them, in a cell from `low` to `high`. Crossings without a normal count for the mean
     /// alone.
-    pub(super) fn vertex(&self, crossings: &[(DVec3, Option<DVec3>)], low: DVec3, high: DVec3) -> DVec3 {
+    pub(crate) fn vertex(&self, crossings: &[(DVec3, Option<DVec3>)], low: DVec3, high: DVec3) -> DVec3 {
         let mean = crossings.iter().map(|(p, _)| *p).sum::<DVec3>() / crossings.len() as f64;
         let mut sum = Distances { a: DMat3::ZERO, b: DVec3::ZERO };
         for (p, normal) in crossings {

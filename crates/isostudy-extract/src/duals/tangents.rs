@@ -14,7 +14,7 @@ const MOST_CALLS: usize = 24;
 const TOLERANCE: f64 = 1e-6;
 
 /// A crossing, and the outward unit normal of the field there, if it has one.
-pub(super) type Tangent = (DVec3, Option<DVec3>);
+pub(crate) type Tangent = (DVec3, Option<DVec3>);
 
 /// By layer, even or odd: by column, row and axis.
 pub(super) type Known = [HashMap<[usize; 3], Tangent>; 2];
@@ -41,7 +41,7 @@ impl<'a> Tangents<'a> {
 }
 
 /// The same, found anew.
-pub(super) fn tangent(
+pub(crate) fn tangent(
     level: Level,
     grid: &CubeGrid,
     from: [usize; 3],

@@ -30,6 +30,8 @@ pub(super) struct VertexPass<'a> {
     pub(super) samples: &'a Samples,
     pub(super) values: Values<'a>,
     pub(super) placer: &'a Placer<'a>,
+    /// Whether each vertex is in the middle of its cell.
+    pub(super) in_middle: bool,
 }
 
 impl VertexPass<'_> {
@@ -73,6 +75,11 @@ impl VertexPass<'_> {
                     records.set(place, Record { first: vertices.positions.len() as u32, plan });
                     for (number, mean) in plans.at(plan).means.iter().enumerate() {
                         let position = match &mut by_planes {
+                            None if self.in_middle => {
+                                let xs = [grid.at[0][cell[0]], grid.at[0][cell[0] + 1]];
+                                let [low, high] = [0, 1].map(|end| Vec3::new(xs[end], ys[end], zs[end]));
+                                low.midpoint(high)
+                            }
                             None => {
                                 let x = cell[0];
                                 let values = std::array::from_fn(|c| values[c >> 1][x + (c & 1)]);

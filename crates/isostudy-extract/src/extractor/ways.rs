@@ -1,9 +1,12 @@
 //! What is made of the cubes of a simple cubic lattice, one way or the other.
 
-use crate::cubes::{Continued, Diagonals, EdgeMoves, Faces, Flat, Kept, Rule, continuation, patched, snap};
+use crate::cubes::{
+    Continued, Creases, Diagonals, EdgeMoves, Faces, Flat, Kept, Rule, continuation, patched, snap,
+};
 use crate::duals::{self, Nets};
 use crate::extraction::ExtractError;
 use crate::slabs::Run;
+use crate::surface::trace::Trace;
 
 /// What is made of the cubes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,6 +19,13 @@ pub(crate) enum Way {
         rule: Rule,
         /// How they are moved.
         moves: EdgeMoves,
+    },
+    /// Patches of crossings, with vertices where the surface has creases.
+    Creased {
+        /// What decides the patches.
+        rule: Rule,
+        /// What counts as a crease.
+        creases: Creases,
     },
     /// Patches of crossings and of points that crossings were drawn to.
     Snapped {
@@ -50,6 +60,15 @@ impl CubeStreamer {
                 let run = Run { request, progress, trace, extraction: &mut *extraction };
                 patched::extract((kept, patches), rule, moves.pull, run)?;
                 moves.apply(request, extraction)
+            }
+            Way::Creased { rule, creases } => {
+                // The trace says which edge a vertex is of, and which cell a triangle.
+                let mut own = Trace::default();
+                let Run { request, progress, trace, extraction } = run;
+                let trace = trace.unwrap_or(&mut own);
+                let run = Run { request, progress, trace: Some(&mut *trace), extraction: &mut *extraction };
+                patched::extract((kept, patches), rule, 0.0, run)?;
+                creases.apply(request, trace, extraction)
             }
             Way::Snapped { gamma, flat } => snap::extract((kept, snapped), gamma, flat, run),
             Way::Nets(of) => duals::extract((kept, nets), of, run),

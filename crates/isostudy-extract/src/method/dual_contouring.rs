@@ -61,7 +61,7 @@ impl Default for DualContouring {
 impl Family for DualContouring {
     fn way(&self) -> Option<Way> {
         let sharp = Sharp { truncation: self.truncation, in_cell: self.in_cell };
-        Some(Way::Nets(Nets { patches: self.patches, sharp: Some(sharp), smoothing: 0, tolerance: self.tolerance }))
+        Some(Way::Nets(Nets { patches: self.patches, sharp: Some(sharp), smoothing: 0, tolerance: self.tolerance, blocks: None }))
     }
 
     fn promises(&self) -> Promises {

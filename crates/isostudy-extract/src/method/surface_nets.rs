@@ -42,7 +42,7 @@ pub struct SurfaceNets {
 
 impl Family for SurfaceNets {
     fn way(&self) -> Option<Way> {
-        Some(Way::Nets(Nets { patches: self.patches, sharp: None, smoothing: self.smoothing, tolerance: 0.0 }))
+        Some(Way::Nets(Nets { patches: self.patches, sharp: None, smoothing: self.smoothing, tolerance: 0.0, blocks: None }))
     }
 
     fn promises(&self) -> Promises {

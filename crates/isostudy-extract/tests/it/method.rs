@@ -154,7 +154,7 @@ fn presets_keep_the_promise_of_a_manifold_whatever_the_samples() {
             }
         }
     }
-    assert_eq!(promised, 26, "all but those as published");
+    assert_eq!(promised, 27, "all but those as published");
 }
 
 #[test]
