@@ -135,13 +135,13 @@ fn nothing_leaves_the_drawing_and_no_text_stands_on_another() {
     }
 }
 
-/// A study with 31 methods and four objects, and records made up for it.
+/// A study with 32 methods and four objects, and records made up for it.
 fn large() -> Everything {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/terrain.toml");
     let study = isostudy_design::Study::load(&path).unwrap();
     let mut all = Everything::of(fixture::study());
     let ids: Vec<_> = study.configurations.iter().map(|of| of.id.clone()).collect();
-    assert!(study.methods.len() == 31 && study.file.objects.len() == 4);
+    assert!(study.methods.len() == 32 && study.file.objects.len() == 4);
     let known = all.meshes.iter().find(|mesh| mesh.purpose == isostudy_design::record::Purpose::Benchmark);
     let known = known.unwrap().clone();
     let of = all.bench.samples[0].id.clone();

@@ -164,10 +164,10 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/terrain.toml");
         let study = Study::load(&path).unwrap();
         let of_object: Vec<&Configuration> = study.configurations.iter().filter(|c| c.object == 1).collect();
-        assert_eq!(of_object.len(), 31);
+        assert_eq!(of_object.len(), 32);
         let all = unlike_others(&study, &of_object);
         // None that is only matched, and none that is set apart; all looks of a recipe.
-        let want = "mc mc33 mc-edge-groups snapmc bi bi-relaxed si nets-manifold dc dc-manifold dc-adaptive dc-in-cell vtk-fe dc-smooth \
+        let want = "mc mc33 mc-edge-groups snapmc bi bi-relaxed si nets-manifold dc dc-manifold dc-adaptive dc-in-cell cms vtk-fe dc-smooth \
                     nets-smooth nets-flat mc-half nets-half";
         assert_eq!(ids(&all).join(" "), want);
 

@@ -181,7 +181,9 @@ impl Pipeline<'_> {
 /// The configurations that can be timed: all but those whose meshes are there.
 pub(super) fn timed(study: &Study) -> Result<Vec<&Configuration>> {
     let mut timed = Vec::new();
-    for configuration in &study.configurations {
+    // Another look is the same work once more.
+    let is_work = |configuration: &&Configuration| !study.is_repeated(configuration.id.method);
+    for configuration in study.configurations.iter().filter(is_work) {
         match recipe(study, configuration.id.method, Purpose::Benchmark)? {
             Recipe::Meshes(_) => {}
             Recipe::Extractor(_) | Recipe::Program(_) | Recipe::GridCells => timed.push(configuration),
