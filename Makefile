@@ -8,7 +8,7 @@ ifndef SEED
 SEED := $(shell od -An -N4 -tu4 /dev/urandom | tr -d ' ')
 endif
 
-.PHONY: help study test test-long attacks quick terrain bench bench-sweep figures check bunny three viewer-library cgal clean
+.PHONY: help study test test-long attacks quick terrain families bench bench-sweep figures check bunny three viewer-library cgal clean
 
 help: ## list these entries
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 11
@@ -39,6 +39,10 @@ quick: bunny viewer-library ## the same study made small, into results/quick/
 
 terrain: cache/methods/installed viewer-library ## methods for terrain in games, with cells and with triangles alike, into results/terrain/
 	PATH="$(CURDIR)/cache/methods/bin:$$PATH" $(ISOSTUDY) study configs/terrain.toml --allow-programs
+
+families: cache/methods/installed viewer-library ## one method of every family on four objects, into results/all/
+	python3 scripts/all-grids.py cache/grids
+	PATH="$(CURDIR)/cache/methods/bin:$$PATH" $(ISOSTUDY) study configs/all.toml --allow-programs
 
 cache/methods/installed: scripts/methods/requirements.txt
 	python3 -m venv cache/methods
