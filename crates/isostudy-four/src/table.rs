@@ -66,8 +66,7 @@ impl<const D: usize> Table<D> {
                 classes.push(entry);
             }
         }
-        let facets: Vec<Vec<u32>> =
-            classes.par_iter().map(|&entry| patch_facets(&cube, entry)).collect();
+        let facets: Vec<Vec<u32>> = classes.par_iter().map(|&entry| patch_facets(&cube, entry)).collect();
         let entries: Vec<Vec<[u8; D]>> = (0..count)
             .into_par_iter()
             .map(|entry| {
@@ -146,7 +145,9 @@ fn simplices<const D: usize>(cube: &Cube<D>, inside: u32, surface: Vec<u32>) -> 
     simplices.sort_unstable();
     let within = doubled::<D>(inside.trailing_zeros() as u8);
     for simplex in &mut simplices {
-        let [origin, rest @ ..] = &simplex.map(|e| cube.edges()[usize::from(e)].middle)[..] else { unreachable!() };
+        let [origin, rest @ ..] = &simplex.map(|e| cube.edges()[usize::from(e)].middle)[..] else {
+            unreachable!()
+        };
         let rows: Vec<[i32; D]> =
             std::iter::once(&within).chain(rest).map(|&point| minus(point, *origin)).collect();
         match minor(&rows, !0) {

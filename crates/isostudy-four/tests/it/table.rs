@@ -19,11 +19,8 @@ fn orbits(group: &[&Symmetry], with_complement: bool) -> usize {
         }
         count += 1;
         for symmetry in group {
-            let image = symmetry
-                .to
-                .iter()
-                .enumerate()
-                .fold(0u32, |image, (c, to)| image | (entry >> c & 1) << to);
+            let image =
+                symmetry.to.iter().enumerate().fold(0u32, |image, (c, to)| image | (entry >> c & 1) << to);
             seen[image as usize] = true;
             seen[(image ^ 0xffff) as usize] |= with_complement;
         }
