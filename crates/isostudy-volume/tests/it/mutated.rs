@@ -56,7 +56,7 @@ fn corpus() -> Vec<(&'static str, Vec<u8>)> {
     files
 }
 
-fn mutate(bytes: &mut Vec<u8>, random: &mut Pcg64) {
+pub(crate) fn mutate(bytes: &mut Vec<u8>, random: &mut Pcg64) {
     for _ in 0..random.random_range(1..=4) {
         let at = random.random_range(0..=bytes.len());
         let end = (at + random.random_range(0..=40)).min(bytes.len());
