@@ -11,6 +11,7 @@ use crate::error::FourError;
 use crate::placement::{Placement, check_isovalue};
 use crate::space_time::place;
 use crate::surface::sort;
+use crate::vtk::write_tetrahedra;
 
 /// A solid of tetrahedra in three dimensions.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -152,16 +153,9 @@ impl Solid {
     ///
     /// # Errors
     /// Those of `output`.
-    pub fn write_vtk(&self, mut output: impl Write) -> io::Result<()> {
-        let (points, cells) = (self.positions.len(), self.tetrahedra.len());
-        writeln!(output, "# vtk DataFile Version 3.0\nsolid between two isovalues, isostudy\nASCII")?;
-        writeln!(output, "DATASET UNSTRUCTURED_GRID\nPOINTS {points} double")?;
-        self.positions.iter().try_for_each(|p| writeln!(output, "{} {} {}", p.x, p.y, p.z))?;
-        writeln!(output, "CELLS {cells} {}", 5 * cells)?;
-        self.tetrahedra.iter().try_for_each(|[a, b, c, d]| writeln!(output, "4 {a} {b} {c} {d}"))?;
-        writeln!(output, "CELL_TYPES {cells}")?;
-        self.tetrahedra.iter().try_for_each(|_| writeln!(output, "10"))?;
-        writeln!(output, "POINT_DATA {points}\nSCALARS value float 1\nLOOKUP_TABLE default")?;
-        self.values.iter().try_for_each(|value| writeln!(output, "{value}"))
+    pub fn write_vtk(&self, output: impl Write) -> io::Result<()> {
+        let places =
+            self.positions.iter().zip(&self.values).map(|(p, value)| (p.to_array(), f64::from(*value)));
+        write_tetrahedra(output, "solid between two isovalues", places, &self.tetrahedra, "value")
     }
 }

@@ -57,6 +57,7 @@ mod slicing;
 mod space_time;
 mod surface;
 mod table;
+mod vtk;
 
 pub use cube::{Cube, Edge};
 pub use error::FourError;

@@ -1,5 +1,6 @@
 //! The surface of a series in space-time.
 
+use std::io::{self, Write};
 use std::ops::Range;
 
 use glam::{DVec3, DVec4};
@@ -10,6 +11,7 @@ use crate::crossings::{Crossings, Level};
 use crate::error::FourError;
 use crate::placement::Placement;
 use crate::slicing;
+use crate::vtk::write_tetrahedra;
 
 /// A surface in space-time: tetrahedra in four dimensions, of which each time has a slice.
 ///
@@ -104,6 +106,16 @@ impl SpaceTime {
         let layer = frame.min(self.layers.len() - 1);
         let tetrahedra = &self.tetrahedra[self.layers[layer].clone()];
         Ok(slicing::in_frame(&self.positions, tetrahedra, self.frames[frame].clone(), layer < frame))
+    }
+
+    /// Writes the tetrahedra at their places in space as a legacy file of VTK in ASCII, with the array `time` at the vertices: a contour of
+    /// it is a slice. In space tetrahedra lie on each other.
+    ///
+    /// # Errors
+    /// Those of `output`.
+    pub fn write_vtk(&self, output: impl Write) -> io::Result<()> {
+        let places = self.positions.iter().map(|p| (p.truncate().to_array(), p.w));
+        write_tetrahedra(output, "surface in space-time", places, &self.tetrahedra, "time")
     }
 
     /// The three-dimensional content, where a frame lasts `frame_length` in the unit of space.

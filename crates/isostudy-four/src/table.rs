@@ -138,19 +138,14 @@ fn simplices<const D: usize>(cube: &Cube<D>, inside: u32, surface: Vec<u32>) -> 
     let crossed = cube.crossed(inside);
     let sides = (0..2 * D).map(|side| cube.facet(side >> 1, side & 1) & crossed);
     let all: Vec<u32> = surface.iter().copied().chain(sides).collect();
-    let mut found = Vec::new();
-    surface.iter().for_each(|&facet| pull(facet, &all, D as u32 - 1, &mut found));
-    let mut simplices: Vec<[u8; D]> =
-        found.into_iter().map(|simplex| simplex.try_into().expect("as many as dimensions")).collect();
+    let mut simplices = Vec::new();
+    surface.iter().for_each(|&facet| pull(facet, &all, &mut simplices));
     simplices.sort_unstable();
     let within = doubled::<D>(inside.trailing_zeros() as u8);
     for simplex in &mut simplices {
-        let [origin, rest @ ..] = &simplex.map(|e| cube.edges()[usize::from(e)].middle)[..] else {
-            unreachable!()
-        };
-        let rows: Vec<[i32; D]> =
-            std::iter::once(&within).chain(rest).map(|&point| minus(point, *origin)).collect();
-        match minor(&rows, !0) {
+        let mut rows = simplex.map(|e| cube.edges()[usize::from(e)].middle);
+        let origin = std::mem::replace(&mut rows[0], within);
+        match minor(&rows.map(|point| minus(point, origin)), !0) {
             0 => unreachable!("an inside corner lies on no facet of the surface"),
             1.. => simplex.swap(D - 2, D - 1),
             _ => {}
