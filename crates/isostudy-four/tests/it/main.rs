@@ -7,3 +7,4 @@ mod series;
 mod slices;
 mod table;
 mod topology;
+mod vtk;
