@@ -33,6 +33,7 @@ ONLY = {
     "isostudy-grid": {"isostudy"},
     "isostudy-program": {"isostudy"},
     "isostudy-scattered": {"isostudy"},
+    "isostudy-four": {"isostudy"},
 }
 # All crates of the workspace that these may use themselves.
 KNOWS = {

@@ -13,6 +13,7 @@ mod finish;
 mod fixture;
 mod football;
 mod foreign;
+mod frames;
 mod gate;
 mod grids;
 mod http;

@@ -41,7 +41,8 @@
 //!
 //! - Coordinates are those of the file's own space. Nothing is converted between the conventions of medicine
 //!   (left-posterior-superior, right-anterior-superior) or from left-handed spaces.
-//! - Colour, vectors, time series (a fourth axis longer than 1), lists of slices, `block` and 64-bit whole numbers, and
+//! - A time series, which is an NRRD with a fourth axis, is read by [`open_series`] alone.
+//! - Colour, vectors, lists of slices, `block` and 64-bit whole numbers, and
 //!   bzip2 are refused.
 //!
 //! [NRRD]: https://teem.sourceforge.net/nrrd/format.html
@@ -53,6 +54,7 @@ mod labels;
 mod metaimage;
 mod nrrd;
 mod raw;
+mod series;
 mod stored;
 
 use std::path::Path;
@@ -62,6 +64,7 @@ pub use error::{Problem, VolumeError};
 pub use header::{Frame, Unread};
 pub use labels::{LABELS_END, NotALabel};
 pub use raw::RawHeader;
+pub use series::{UnreadSeries, VolumeSeries, open_series};
 pub use stored::Stored;
 
 /// For [`read`], where memory need not be watched.

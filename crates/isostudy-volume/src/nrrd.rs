@@ -1,13 +1,16 @@
 //! Nearly raw raster data (Kindlmann, teem), versions 1 to 5, header attached or detached.
 
+use std::fs::File;
+use std::io::BufReader;
 use std::path::Path;
 
 use crate::data::{self, Encoding, Layout, SampleKind, Skip};
 use crate::error::{Problem, VolumeError, shortened};
 use crate::header::{Data, Frame, Lines, Unread, numbers, sample_count};
+use crate::series::{FrameAxis, UnreadSeries};
 
 /// Fields of the format's definition that say nothing of what a sample is or where it lies.
-const PASSED_OVER: [&str; 20] = [
+const PASSED_OVER: [&str; 19] = [
     "content",
     "number",
     "sample units",
@@ -23,7 +26,6 @@ const PASSED_OVER: [&str; 20] = [
     "thicknesses",
     "labels",
     "units",
-    "kinds",
     "space",
     "space units",
     "space dimension",
@@ -31,15 +33,21 @@ const PASSED_OVER: [&str; 20] = [
 ];
 
 pub(crate) fn open(path: &Path) -> Result<Unread, VolumeError> {
-    let here = |problem: Problem| problem.in_file(path);
-    let mut lines = Lines::new(data::open(path).map_err(here)?);
-    let fields = Fields::read(&mut lines).map_err(here)?;
-    let (frame, layout) = fields.meaning().map_err(here)?;
-    let data = match fields.data_file {
-        Some(name) => Data::In(name.into()),
-        None => Data::Here(lines.into_data()),
-    };
-    Ok(Unread::new(frame, layout, path, data))
+    let (fields, lines) = header(path).map_err(|problem| problem.in_file(path))?;
+    let (frame, layout) = fields.meaning().map_err(|problem| problem.in_file(path))?;
+    Ok(Unread::new(frame, layout, path, fields.data(lines)))
+}
+
+/// The same of a file with four axes, one of which is that of frames.
+pub(crate) fn open_series(path: &Path) -> Result<UnreadSeries, VolumeError> {
+    let (fields, lines) = header(path).map_err(|problem| problem.in_file(path))?;
+    let (frame, layout, axis) = fields.meaning_in_time().map_err(|problem| problem.in_file(path))?;
+    Ok(UnreadSeries::new(Unread::new(frame, layout, path, fields.data(lines)), axis))
+}
+
+fn header(path: &Path) -> Result<(Fields, Lines<BufReader<File>>), Problem> {
+    let mut lines = Lines::new(data::open(path)?);
+    Ok((Fields::read(&mut lines)?, lines))
 }
 
 /// What the header says, as far as it matters; per-axis fields have a value an axis once `meaning` has checked them.
@@ -55,6 +63,8 @@ struct Fields {
     maxs: Option<Vec<f64>>,
     /// Whether samples stand for cells; otherwise for nodes.
     cells: Option<Vec<bool>>,
+    /// What each axis is; only of a series.
+    kinds: Option<Vec<String>>,
     directions: Option<Vec<Option<[f64; 3]>>>,
     space_origin: Option<[f64; 3]>,
     data_file: Option<String>,
@@ -121,6 +131,10 @@ impl Fields {
                 let cells = value.split_ascii_whitespace().map(|word| word != "node");
                 self.cells = Some(cells.collect());
             }
+            "kinds" => {
+                let kinds = value.split_ascii_whitespace().map(str::to_ascii_lowercase);
+                self.kinds = Some(kinds.collect());
+            }
             "space dimension" if value != "3" => {
                 return Err(Problem::unsupported("space dimension", value, "3 is"));
             }
@@ -154,12 +168,69 @@ impl Fields {
         Ok(())
     }
 
+    fn data(self, lines: Lines<BufReader<File>>) -> Data {
+        match self.data_file {
+            Some(name) => Data::In(name.into()),
+            None => Data::Here(lines.into_data()),
+        }
+    }
+
     /// What it all means together.
     fn meaning(&self) -> Result<(Frame, Layout), Problem> {
+        let sizes = self.checked_sizes()?;
+        let samples = sample_count(sizes)?;
+        let Ok::<[usize; 3], _>(spatial) = self.long_axes(sizes, 3).try_into() else {
+            return Err(Problem::unsupported("sizes", &format!("{sizes:?}"), "three axes longer than 1 are"));
+        };
+        let frame = self.frame(spatial, sizes)?;
+        frame.check()?;
+        Ok((frame, self.layout(samples)?))
+    }
+
+    /// The same of four axes: three of space, and the place of that of frames among them.
+    fn meaning_in_time(&self) -> Result<(Frame, Layout, FrameAxis), Problem> {
+        let sizes = self.checked_sizes()?;
+        let samples = sample_count(sizes)?;
+        let Ok::<[usize; 4], _>(axes) = self.long_axes(sizes, 4).try_into() else {
+            return Err(Problem::unsupported(
+                "sizes",
+                &format!("{sizes:?}"),
+                "a series in one file has four axes",
+            ));
+        };
+        let time = self.axis_of_frames(axes)?;
+        let mut spatial = axes.into_iter().filter(|&axis| axis != time);
+        let frame = self.frame([0; 3].map(|_| spatial.next().expect("three are left")), sizes)?;
+        frame.check()?;
+        let before = sizes[..time].iter().product::<u64>() as usize;
+        Ok((frame, self.layout(samples)?, FrameAxis { frames: sizes[time] as usize, before }))
+    }
+
+    /// The axis that has no direction where the others have one; that of the kind `time`, or `list`; the last one.
+    fn axis_of_frames(&self, axes: [usize; 4]) -> Result<usize, Problem> {
+        let alone = |is: &dyn Fn(usize) -> bool| {
+            let mut found = axes.into_iter().filter(|&axis| is(axis));
+            found.next().filter(|_| found.next().is_none())
+        };
+        let kind =
+            |axis: usize| self.kinds.as_ref().and_then(|kinds| kinds.get(axis)).map_or("???", String::as_str);
+        let axis = alone(&|axis| self.directions.as_ref().is_some_and(|d| d[axis].is_none()))
+            .or_else(|| alone(&|axis| kind(axis) == "time"))
+            .or_else(|| alone(&|axis| kind(axis) == "list"))
+            .unwrap_or(axes[3]);
+        match kind(axis) {
+            "time" | "list" | "domain" | "space" | "none" | "???" => Ok(axis),
+            // Colours and vectors are no frames.
+            kind => Err(Problem::unsupported("kinds", kind, "`time` or `list` is, for the axis of frames")),
+        }
+    }
+
+    /// The sizes, of which there are as many as axes, like of all that is said per axis.
+    fn checked_sizes(&self) -> Result<&[u64], Problem> {
         let dimension = self.dimension.ok_or(Problem::Lacks { key: "dimension" })?;
         let sizes = self.sizes.as_ref().ok_or(Problem::Lacks { key: "sizes" })?;
-        let kind = self.kind.ok_or(Problem::Lacks { key: "type" })?;
-        let encoding = self.encoding.ok_or(Problem::Lacks { key: "encoding" })?;
+        self.kind.ok_or(Problem::Lacks { key: "type" })?;
+        self.encoding.ok_or(Problem::Lacks { key: "encoding" })?;
         let axes = |key: &'static str, count: Option<usize>| match count {
             Some(count) if count != dimension => {
                 let value = format!("{count} values for {dimension} axes");
@@ -173,22 +244,25 @@ impl Fields {
         axes("axis maxs", self.maxs.as_ref().map(Vec::len))?;
         axes("centers", self.cells.as_ref().map(Vec::len))?;
         axes("space directions", self.directions.as_ref().map(Vec::len))?;
-        let samples = sample_count(sizes)?;
-        // Further axes may be there as long as nothing is along them: those without a direction first.
-        let mut spatial: Vec<usize> = (0..dimension).collect();
-        while spatial.len() > 3 {
+        Ok(sizes)
+    }
+
+    /// The axes, without further ones than `wanted` along which nothing is: those without a direction go first.
+    fn long_axes(&self, sizes: &[u64], wanted: usize) -> Vec<usize> {
+        let mut long: Vec<usize> = (0..sizes.len()).collect();
+        while long.len() > wanted {
             let without = |&i: &usize| self.directions.as_ref().is_some_and(|d| d[i].is_none());
             let empty = |&&i: &&usize| sizes[i] == 1;
-            let first =
-                spatial.iter().filter(empty).find(|i| without(i)).or_else(|| spatial.iter().find(empty));
+            let first = long.iter().filter(empty).find(|i| without(i)).or_else(|| long.iter().find(empty));
             let Some(&gone) = first else { break };
-            spatial.retain(|&i| i != gone);
+            long.retain(|&i| i != gone);
         }
-        let Ok::<[usize; 3], _>(spatial) = spatial.try_into() else {
-            return Err(Problem::unsupported("sizes", &format!("{sizes:?}"), "three axes longer than 1 are"));
-        };
-        let frame = self.frame(spatial, sizes)?;
-        frame.check()?;
+        long
+    }
+
+    fn layout(&self, samples: u64) -> Result<Layout, Problem> {
+        let kind = self.kind.ok_or(Problem::Lacks { key: "type" })?;
+        let encoding = self.encoding.ok_or(Problem::Lacks { key: "encoding" })?;
         if kind.bytes() > 1 && self.big_endian.is_none() && encoding != Encoding::Text {
             return Err(Problem::Lacks { key: "endian" });
         }
@@ -201,8 +275,7 @@ impl Fields {
             return Err(Problem::unsupported("byte skip", "with text", "`line skip` is"));
         }
         let skip = Skip { lines: self.line_skip, bytes };
-        let big_endian = self.big_endian.unwrap_or(false);
-        Ok((frame, Layout { kind, big_endian, encoding, skip, samples }))
+        Ok(Layout { kind, big_endian: self.big_endian.unwrap_or(false), encoding, skip, samples })
     }
 
     /// The directions where they are given; otherwise the axes' own spacings, and their minima or zero.

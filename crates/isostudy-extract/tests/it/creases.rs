@@ -57,9 +57,7 @@ impl Balls {
         let mut random = Pcg64Mcg::seed_from_u64(seed);
         let mut number = || random.random::<f32>() - 0.5;
         Self(
-            (0..12)
-                .map(|_| (Vec3::new(number(), number(), number()), 0.25 + 0.3 * number().abs()))
-                .collect(),
+            (0..12).map(|_| (Vec3::new(number(), number(), number()), 0.25 + 0.3 * number().abs())).collect(),
         )
     }
 }

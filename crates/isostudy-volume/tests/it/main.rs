@@ -3,4 +3,5 @@
 mod files;
 mod formats;
 mod mutated;
+mod series;
 mod stored;

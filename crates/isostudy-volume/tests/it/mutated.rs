@@ -60,6 +60,11 @@ fn corpus() -> Vec<(&'static str, Vec<u8>)> {
     files
 }
 
+/// Up to four changes, of up to forty bytes.
+pub(crate) fn mutate(bytes: &mut Vec<u8>, random: &mut Pcg64) {
+    damage(bytes, &TOKENS, [4, 40], random);
+}
+
 fn run(rounds: u64, seed: u64) {
     let (folder, corpus) = (Folder::new(), corpus());
     folder.write("a.data", bytes("u8", false));
@@ -67,7 +72,7 @@ fn run(rounds: u64, seed: u64) {
     for round in 0..rounds {
         let mut random = Pcg64::seed_from_u64(seed + round);
         let (name, mut bytes) = corpus[round as usize % corpus.len()].clone();
-        damage(&mut bytes, &TOKENS, [4, 40], &mut random);
+        mutate(&mut bytes, &mut random);
         folder.write(name, &bytes);
         let read_whole = isostudy_volume::read(&folder.path(name), 1 << 20);
         // What can be read in parts has the same samples, or the same fault.

@@ -2,6 +2,7 @@
 
 mod chosen_method;
 mod finished;
+mod frames;
 mod grid;
 mod isovalues;
 mod labels;
@@ -35,12 +36,14 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh", "points", "soup", "grid", "labels"]).required(true)))]
+#[command(group(ArgGroup::new("source").args(["study", "field", "volume", "mesh", "points", "soup", "grid", "frames", "labels"]).required(true)))]
 #[command(after_help = "\
 Examples:
   isostudy extract --field 'sqrt(x^2+y^2+z^2) - 1' --bounds=-1.2,-1.2,-1.2,1.2,1.2,1.2 --spacing 0.05 -o ball.ply
   isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb --quality
   isostudy extract --grid flow.vtu --array pressure --isovalue 0.5 -o pressure.ply
+  isostudy extract --frames beating.nrrd --isovalue 300 --time 1.25 -o heart.ply
+  isostudy extract --volume head.nrrd --between 300,500 -o tissue.vtk
   isostudy extract --labels organs.seg.nrrd --only 2,5 -o organs.glb
   isostudy extract --volume head.nrrd --isovalues 100:1500:15 -o 'head-{isovalue}.ply' --method mc
   isostudy extract --field 'max(abs(x), max(abs(y), abs(z))) - 1' --bounds=-2,-2,-2,2,2,2 -o box.glb --method dc-in-cell --crease-deg 40
@@ -61,6 +64,22 @@ pub(crate) struct Arguments {
     /// Array of a grid, with a value on each of its points; of TetGen's files, the number of an attribute [default: the only one]
     #[arg(long, value_name = "NAME", requires = "grid")]
     array: Option<String>,
+    /// Volumes of one size, one after the other, as a surface in space-time; or one .nrrd with four axes. Needs --isovalue. Without --time and
+    /// --times, -o is a .vtk of tetrahedra
+    #[arg(long, value_name = "FILE,FILE,...", value_delimiter = ',', requires = "isovalue", conflicts_with_all = ["study", "bounds", "spacing",
+        "cells", "close", "allow_open", "isovalues", "arrangement", "clustering", "method", "recipe", "finish", "quality", "json"])]
+    frames: Vec<PathBuf>,
+    /// Time of a slice of --frames: that of the first frame is 0, and that of the next is 1
+    #[arg(long, value_name = "T", requires = "frames", conflicts_with = "times", allow_hyphen_values = true)]
+    time: Option<f64>,
+    /// Number of slices of --frames from the first frame to the last, each a file: mesh.ply becomes mesh_0000.ply and so on
+    #[arg(long, value_name = "N", requires = "frames", conflicts_with = "picture", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    times: Option<u32>,
+    /// Two isovalues of a --volume: -o is a .vtk of the tetrahedra between them
+    #[arg(long, value_name = "LOW,HIGH", value_parser = frames::between, allow_hyphen_values = true, group = "level", requires = "volume",
+        conflicts_with_all = ["study", "bounds", "spacing", "cells", "close", "inside", "arrangement", "clustering", "method", "recipe", "finish",
+        "quality", "json", "picture"])]
+    between: Option<[f32; 2]>,
     /// Volume of labels, whole numbers of which 0 is the background: the boundaries between every two of them, by surface nets
     #[arg(long, value_name = "FILE", conflicts_with_all = ["study", "bounds", "spacing", "cells", "isovalue", "inside", "allow_open", "arrangement", "clustering"])]
     labels: Option<PathBuf>,
@@ -106,16 +125,16 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1024))]
     threads: u32,
     /// Of a study, redo what is up to date as well
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid", "labels"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid", "frames", "labels"])]
     force: bool,
     /// Of a study, run the programs that it names as methods; they may do whatever you may do
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid", "labels"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid", "frames", "labels"])]
     allow_programs: bool,
     /// Of a study, run programs by bubblewrap: without a network, in a folder of their own, the system read-only
-    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid", "labels"])]
+    #[arg(long, conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid", "frames", "labels"])]
     sandbox: bool,
     /// Of a study, only these configurations, such as ss_bi; of labels, only these, such as 2,5 [default: all]
-    #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid"])]
+    #[arg(long, value_name = "ID", value_delimiter = ',', conflicts_with_all = ["field", "volume", "mesh", "points", "soup", "grid", "frames"])]
     only: Vec<String>,
 }
 
@@ -179,7 +198,13 @@ fn extract(arguments: &Arguments) -> Result<Outcome> {
     if let Some(path) = &arguments.grid {
         return grid::extract(arguments, path);
     }
+    if !arguments.frames.is_empty() {
+        return frames::extract(arguments);
+    }
     let out = arguments.out.as_deref().context("-o is needed")?;
+    if let Some(between) = arguments.between {
+        return frames::extract_between(arguments, out, between);
+    }
     if let Some(isovalues) = &arguments.isovalues {
         return isovalues.extract(arguments, out);
     }
