@@ -3,6 +3,7 @@
 mod chunk;
 mod error;
 mod extractor;
+mod labels;
 mod layout;
 mod part;
 mod piece;
@@ -15,6 +16,7 @@ mod world;
 pub use chunk::{Chunk, TooManyVertices};
 pub use error::ChunkError;
 pub use extractor::ChunkExtractor;
+pub use labels::{LabelChunk, weld_label_chunks};
 pub use layout::SampleLayout;
 pub use settings::{ChunkSettings, Normals};
 pub use weld::{Mismatch, WeldError, weld_chunks};

@@ -22,9 +22,8 @@ mod sharp;
 mod tangents;
 mod vertices;
 
-pub use labels::{
-    LabelChunk, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume, weld_label_chunks,
-};
+pub(crate) use labels::Placed;
+pub use labels::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
 pub(crate) use quads::{ROUND, is_other_better};
 pub(crate) use relaxed::MOST_SMOOTHING;
 pub(crate) use sharp::Sharp;

@@ -227,15 +227,13 @@ mod tetrahedra;
 mod wording;
 
 pub use chunks::{
-    Chunk, ChunkError, ChunkExtractor, ChunkSettings, Mismatch, Normals, SampleLayout, TooManyVertices,
-    WeldError, World, weld_chunks,
+    Chunk, ChunkError, ChunkExtractor, ChunkSettings, LabelChunk, Mismatch, Normals, SampleLayout,
+    TooManyVertices, WeldError, World, weld_chunks, weld_label_chunks,
 };
 #[cfg(feature = "stage-clock")]
 pub use clock::set_stage_clock;
 pub use cubes::{ContinuedCells, Diagonals, Faces, Flat, Seeds, SeedsError};
-pub use duals::{
-    LabelChunk, LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume, weld_label_chunks,
-};
+pub use duals::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
 pub use execution::{Control, Jobs, Threads};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::Extractor;

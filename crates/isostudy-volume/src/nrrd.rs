@@ -7,7 +7,6 @@ use std::path::Path;
 use crate::data::{self, Encoding, Layout, SampleKind, Skip};
 use crate::error::{Problem, VolumeError, shortened};
 use crate::header::{Data, Frame, Lines, Unread, numbers, sample_count};
-use crate::series::{FrameAxis, UnreadSeries};
 
 /// Fields of the format's definition that say nothing of what a sample is or where it lies.
 const PASSED_OVER: [&str; 19] = [
@@ -32,6 +31,14 @@ const PASSED_OVER: [&str; 19] = [
     "measurement frame",
 ];
 
+/// Which axis of a file is that of frames.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FrameAxis {
+    pub(crate) frames: usize,
+    /// Samples of one frame that stand together: the product of the sizes of faster axes.
+    pub(crate) before: usize,
+}
+
 pub(crate) fn open(path: &Path) -> Result<Unread, VolumeError> {
     let (fields, lines) = header(path).map_err(|problem| problem.in_file(path))?;
     let (frame, layout) = fields.meaning().map_err(|problem| problem.in_file(path))?;
@@ -39,10 +46,10 @@ pub(crate) fn open(path: &Path) -> Result<Unread, VolumeError> {
 }
 
 /// The same of a file with four axes, one of which is that of frames.
-pub(crate) fn open_series(path: &Path) -> Result<UnreadSeries, VolumeError> {
+pub(crate) fn open_series(path: &Path) -> Result<(Unread, FrameAxis), VolumeError> {
     let (fields, lines) = header(path).map_err(|problem| problem.in_file(path))?;
     let (frame, layout, axis) = fields.meaning_in_time().map_err(|problem| problem.in_file(path))?;
-    Ok(UnreadSeries::new(Unread::new(frame, layout, path, fields.data(lines)), axis))
+    Ok((Unread::new(frame, layout, path, fields.data(lines)), axis))
 }
 
 fn header(path: &Path) -> Result<(Fields, Lines<BufReader<File>>), Problem> {

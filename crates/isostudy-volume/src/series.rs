@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::error::{Problem, VolumeError};
 use crate::header::{Frame, Unread};
-use crate::nrrd;
+use crate::nrrd::{self, FrameAxis};
 
 /// What a frame takes beside its samples.
 const OF_A_FRAME: u64 = 64;
@@ -20,14 +20,6 @@ pub struct VolumeSeries {
     pub steps: [[f64; 3]; 3],
     /// The samples of each frame, the first axis fastest. They may be infinite or NaN where the file's are.
     pub frames: Vec<Vec<f32>>,
-}
-
-/// Which axis of a file is that of frames.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct FrameAxis {
-    pub(crate) frames: usize,
-    /// Samples of one frame that stand together: the product of the sizes of faster axes.
-    pub(crate) before: usize,
 }
 
 /// A series of which the header was read, and no sample.
@@ -47,7 +39,7 @@ pub struct UnreadSeries {
 pub fn open_series(path: &Path) -> Result<UnreadSeries, VolumeError> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match ending.as_str() {
-        "nrrd" | "nhdr" => nrrd::open_series(path),
+        "nrrd" | "nhdr" => nrrd::open_series(path).map(|(all, axis)| UnreadSeries { all, axis }),
         _ => {
             let problem = Problem::unsupported("ending", &ending, "a series in one file is .nrrd or .nhdr");
             Err(problem.in_file(path))
@@ -56,10 +48,6 @@ pub fn open_series(path: &Path) -> Result<UnreadSeries, VolumeError> {
 }
 
 impl UnreadSeries {
-    pub(crate) fn new(all: Unread, axis: FrameAxis) -> Self {
-        Self { all, axis }
-    }
-
     /// Where the samples of each frame lie.
     pub fn frame(&self) -> Frame {
         self.all.frame()

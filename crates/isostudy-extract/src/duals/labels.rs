@@ -6,10 +6,6 @@
 //!
 //! Two layers of labels and the vertex numbers of two layers of cells are held at a time.
 
-mod chunk;
-
-pub use chunk::{LabelChunk, weld_label_chunks};
-
 use std::collections::{BTreeMap, TryReserveError};
 
 use glam::Vec3;
@@ -182,6 +178,43 @@ impl LabelVolume<'_> {
         Ok(LabelSurface { labelled: crossings.labelled, counts: counted, crossings: crossings.count })
     }
 
+    /// The cells there are: between the labels, and with background beyond the volume half a step round them.
+    fn all_cells(&self, settings: &LabelSettings) -> CellBox {
+        let border = i32::from(settings.close);
+        CellBox { start: [-border; 3], end: self.counts.map(|n| n as i32 - 1 + border) }
+    }
+
+    /// The net round the edges that begin at the lowest corners of some cells, on the calling thread. There may be vertices without a
+    /// quadrilateral.
+    ///
+    /// # Errors
+    /// [`LabelError`].
+    pub(crate) fn net_of(&self, settings: &LabelSettings, cells: CellBox) -> Result<Placed, LabelError> {
+        let space = self.check(settings)?;
+        let all = self.all_cells(settings);
+        if !all.contains_box(&cells) || cells.is_empty() {
+            return Err(LabelError::Beyond { cells, all });
+        }
+        let mut net = Net { keeps_cells: true, keeps_edges: true, ..Net::of(self, settings) };
+        // Numbers of points, those beyond the volume included. Below lie the cells that the lowest quadrilaterals lead to.
+        let around = settings.smoothing as usize;
+        let point = |cell: [i32; 3]| cell.map(|i| (i - all.start[0]) as usize);
+        let (first, last) = (point(cells.start), point(cells.end));
+        for axis in 0..3 {
+            net.first[axis] = first[axis].saturating_sub(1 + around);
+            net.window[axis] = (last[axis] + 1 + around).min(net.size[axis]) - net.first[axis];
+        }
+        let [nx, ny, _] = net.size;
+        let mut placed = net.crossings(&Control::default(), settings.smoothing, &space)?;
+        let is_own = |edge: u64| {
+            let point = (edge / 3) as usize;
+            let place = [point % nx, point / nx % ny, point / nx / ny];
+            (0..3).all(|axis| (first[axis]..last[axis]).contains(&place[axis]))
+        };
+        placed.retain(is_own);
+        Ok(placed)
+    }
+
     /// What is wrong with the volume or the settings, whatever the labels are.
     fn check(&self, settings: &LabelSettings) -> Result<Space, LabelError> {
         let Self { counts, labels, origin, steps } = *self;
@@ -256,11 +289,32 @@ struct Net<'a> {
 }
 
 /// A net in space.
-struct Placed {
-    labelled: LabelledMesh,
-    cells: Vec<[i32; 3]>,
-    edges: Vec<u64>,
+pub(crate) struct Placed {
+    pub(crate) labelled: LabelledMesh,
+    /// The cell of each vertex, where that was kept.
+    pub(crate) cells: Vec<[i32; 3]>,
+    /// The number of the edge of each quadrilateral, where that was kept: it grows as quadrilaterals follow each other.
+    pub(crate) edges: Vec<u64>,
     count: u64,
+}
+
+impl Placed {
+    /// Leaves the quadrilaterals of some edges.
+    fn retain(&mut self, is_kept: impl Fn(u64) -> bool) {
+        let LabelledMesh { mesh, sides } = &mut self.labelled;
+        let mut kept = 0;
+        for i in (0..self.edges.len()).filter(|&i| is_kept(self.edges[i])).collect::<Vec<_>>() {
+            self.edges[kept] = self.edges[i];
+            for half in 0..2 {
+                mesh.triangles[2 * kept + half] = mesh.triangles[2 * i + half];
+                sides[2 * kept + half] = sides[2 * i + half];
+            }
+            kept += 1;
+        }
+        self.edges.truncate(kept);
+        mesh.triangles.truncate(2 * kept);
+        sides.truncate(2 * kept);
+    }
 }
 
 /// What is in sight of a layer of points: its labels and the next layer's, and the vertices of the cells below and above it.

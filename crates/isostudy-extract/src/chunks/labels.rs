@@ -2,12 +2,15 @@
 
 use isostudy_mesh::{LabelledMesh, TriangleMesh};
 
-use super::{LabelError, LabelSettings, LabelVolume, NONE, Net, Placed};
-use crate::chunks::{Mismatch, WeldError};
-use crate::execution::control::Control;
+use super::weld::{Mismatch, WeldError};
+use crate::duals::{LabelError, LabelSettings, LabelVolume, Placed};
+use crate::extraction::ExtractError;
 use crate::lattice::{Arrangement, CellBox};
-use crate::memory::with_room;
+use crate::memory::{filled, with_room};
 use crate::surface::trace::VertexKey;
+
+/// Of a vertex that no triangle has.
+const NONE: u32 = u32::MAX;
 
 /// The boundaries of labels in a box of cells: the triangles round the edges between labels that begin at the lowest corners of its cells.
 /// Vertices on the lower sides are those of cells beside the box, and are there in the chunks of those, too, with the same bits.
@@ -24,12 +27,6 @@ pub struct LabelChunk {
 }
 
 impl LabelVolume<'_> {
-    /// The cells there are: between the labels, and with background beyond the volume half a step round them.
-    fn all_cells(&self, settings: &LabelSettings) -> CellBox {
-        let border = i32::from(settings.close);
-        CellBox { start: [-border; 3], end: self.counts.map(|n| n as i32 - 1 + border) }
-    }
-
     /// Extracts the boundaries in a box of cells, on the calling thread. Chunks of boxes that fill the volume weld to the mesh of
     /// [`extract`](Self::extract), to the byte, smoothed or not. No label is read that is farther than one cell and a cell for each
     /// step of smoothing. The settings' labels are not looked for: a chunk may have none of them.
@@ -37,57 +34,23 @@ impl LabelVolume<'_> {
     /// # Errors
     /// [`LabelError`].
     pub fn extract_chunk(&self, settings: &LabelSettings, cells: CellBox) -> Result<LabelChunk, LabelError> {
-        let space = self.check(settings)?;
-        let all = self.all_cells(settings);
-        if !all.contains_box(&cells) || cells.is_empty() {
-            return Err(LabelError::Beyond { cells, all });
+        let Placed { mut labelled, cells: of_all, edges, .. } = self.net_of(settings, cells)?;
+        let mesh = &mut labelled.mesh;
+        let mut numbers = filled(mesh.positions.len(), NONE).map_err(ExtractError::from)?;
+        mesh.triangles.iter().flatten().for_each(|&v| numbers[v as usize] = 0);
+        // Numbers go up with cells, as they did.
+        let mut vertex_cells = Vec::new();
+        for v in 0..numbers.len() {
+            if numbers[v] != NONE {
+                numbers[v] = vertex_cells.len() as u32;
+                mesh.positions[vertex_cells.len()] = mesh.positions[v];
+                vertex_cells.push(of_all[v]);
+            }
         }
-        let mut net = Net { keeps_cells: true, keeps_edges: true, ..Net::of(self, settings) };
-        // Numbers of points, those beyond the volume included. Below a chunk lie the cells that its lowest quadrilaterals lead to.
-        let around = settings.smoothing as usize;
-        let first = cells.start.map(|i| (i - all.start[0]) as usize);
-        let last = cells.end.map(|i| (i - all.start[0]) as usize);
-        for axis in 0..3 {
-            net.first[axis] = first[axis].saturating_sub(1 + around);
-            net.window[axis] = (last[axis] + 1 + around).min(net.size[axis]) - net.first[axis];
-        }
-        let size = net.size;
-        let placed = net.crossings(&Control::default(), settings.smoothing, &space)?;
-        let is_own = |edge: u64| {
-            let (point, [nx, ny, _]) = ((edge / 3) as usize, size);
-            let place = [point % nx, point / nx % ny, point / nx / ny];
-            (0..3).all(|axis| (first[axis]..last[axis]).contains(&place[axis]))
-        };
-        Ok(chunk_of(cells, placed, is_own)?)
+        mesh.positions.truncate(vertex_cells.len());
+        mesh.triangles.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
+        Ok(LabelChunk { cells, labelled, vertex_cells, edges })
     }
-}
-
-/// The chunk's own quadrilaterals and their vertices, of those that were made.
-fn chunk_of(
-    cells: CellBox,
-    placed: Placed,
-    is_own: impl Fn(u64) -> bool,
-) -> Result<LabelChunk, crate::extraction::ExtractError> {
-    let Placed { labelled: LabelledMesh { mesh, sides }, cells: vertex_cells, edges, .. } = placed;
-    let own: Vec<usize> = (0..edges.len()).filter(|&i| is_own(edges[i])).collect();
-    let mut chunk = LabelChunk { cells, ..LabelChunk::default() };
-    let mut numbers = crate::memory::filled(mesh.positions.len(), NONE)?;
-    for &i in &own {
-        mesh.triangles[2 * i..2 * i + 2].iter().flatten().for_each(|&v| numbers[v as usize] = 0);
-    }
-    // Numbers go up with cells, as they did.
-    for v in (0..numbers.len()).filter(|&v| numbers[v] != NONE).collect::<Vec<_>>() {
-        numbers[v] = chunk.vertex_cells.len() as u32;
-        chunk.labelled.mesh.positions.push(mesh.positions[v]);
-        chunk.vertex_cells.push(vertex_cells[v]);
-    }
-    for i in own {
-        let triangles = &mesh.triangles[2 * i..2 * i + 2];
-        chunk.labelled.mesh.triangles.extend(triangles.iter().map(|t| t.map(|v| numbers[v as usize])));
-        chunk.labelled.sides.extend_from_slice(&sides[2 * i..2 * i + 2]);
-        chunk.edges.push(edges[i]);
-    }
-    Ok(chunk)
 }
 
 /// Joins chunks of one volume and settings at their common vertices. Of boxes that fill the volume this makes the mesh of the whole, to the
