@@ -1,0 +1,390 @@
+//! The driver: border, seeds, steps, repairs, and what is checked at the end.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use glam::DVec3;
+use isostudy_field::StudyField;
+use isostudy_mesh::{Bounds, TriangleMesh};
+
+use crate::error::FrontError;
+use crate::patch::Patch;
+use crate::probe::{Foot, Miss, Probe};
+use crate::samples::Samples;
+use crate::settings::{Counts, Front, Seeds, Sizing};
+use crate::sizes::{Guide, Sizes};
+use crate::step::{ACUTE, Growth, Step, faces};
+use crate::{border, holes};
+
+/// How often the length is halved at one place.
+const HALVINGS: i32 = 4;
+/// How many places are repaired between two beginnings.
+const REPAIRS: u64 = 200;
+/// How often all is begun again with a finer border.
+const RESTARTS: u64 = 5;
+/// Directions in which a first triangle is tried.
+const TURNS: u32 = 6;
+
+/// A mesh, and what was done for it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Grown {
+    /// With normals: the field's own at each vertex, outward. Without triangles if no surface was found.
+    pub mesh: TriangleMesh,
+    /// What was done.
+    pub counts: Counts,
+}
+
+/// Grows triangles over the isosurface in a box. The mesh is open where the surface leaves the box, with vertices on the box's faces.
+///
+/// Inside is above the isovalue, and `NaN` is outside. Works on one thread.
+///
+/// # Errors
+/// [`FrontError`], with the place. There is no mesh that is not closed or no manifold.
+pub fn grow(
+    field: &dyn StudyField,
+    bounds: Bounds,
+    isovalue: f32,
+    settings: &Front,
+) -> Result<Grown, FrontError> {
+    settings.check(bounds, isovalue)?;
+    let probe = Probe::new(field, isovalue, settings.edge);
+    let cells = match (&settings.seeds, settings.sizing) {
+        (Seeds::Sampled { cells }, _) => Some(*cells),
+        (Seeds::Points(_), Sizing::Curvature { .. }) => Some(Seeds::CELLS),
+        (Seeds::Points(_), Sizing::Constant) => None,
+    };
+    let samples = cells.map(|cells| Samples::of(&probe, bounds, cells));
+    let guide = match (settings.sizing, &samples) {
+        (Sizing::Curvature { smallest, angle }, Some(samples)) => {
+            Some(Guide::of(samples, &probe, bounds, settings.edge, smallest, angle))
+        }
+        _ => None,
+    };
+    let smallest = match settings.sizing {
+        Sizing::Curvature { smallest, .. } => smallest,
+        Sizing::Constant => settings.edge,
+    };
+    let sizes = Sizes::new(settings.edge, guide);
+    let least = smallest * 0.5_f64.powi(HALVINGS);
+    let patch = Patch::new(bounds, settings.edge);
+    let counts = Counts::default();
+    let mut grower = Grower { probe: &probe, samples, settings, bounds, sizes, least, patch, border: 0, waiting: Waiting::default(), counts };
+    while !grower.attempt()? {
+        grower.counts.restarts += 1;
+        grower.patch = Patch::new(bounds, settings.edge);
+        grower.waiting = Waiting::default();
+    }
+    Ok(grower.grown())
+}
+
+struct Grower<'a> {
+    probe: &'a Probe<'a>,
+    samples: Option<Samples>,
+    settings: &'a Front,
+    bounds: Bounds,
+    sizes: Sizes,
+    least: f64,
+    patch: Patch,
+    /// So many vertices, the first, lie on the border.
+    border: usize,
+    waiting: Waiting,
+    counts: Counts,
+}
+
+/// Edges of the front, those with an acute angle first, then the oldest.
+#[derive(Default)]
+struct Waiting {
+    edges: BinaryHeap<Reverse<(bool, u64, u32, u32)>>,
+    pushed: u64,
+}
+
+/// An edge that nothing fits, and why.
+struct Stuck {
+    edge: [u32; 2],
+    blame: Option<Miss>,
+}
+
+impl Grower<'_> {
+    /// Grows all. Whether it is done; if not, the border must be finer.
+    fn attempt(&mut self) -> Result<bool, FrontError> {
+        let step = self.sizes.at(0.5 * (self.bounds.min + self.bounds.max).as_dvec3()).max(self.settings.edge);
+        let step = step * 0.5_f64.powi(self.counts.restarts as i32);
+        let loops = border::loops(self.probe, self.bounds, &self.sizes, step).map_err(|miss| self.missed(miss))?;
+        self.counts.border_loops = loops.len() as u64;
+        for curve in loops {
+            let vertices: Vec<u32> = curve.into_iter().map(|foot| self.patch.add_vertex(foot)).collect();
+            for (i, &v) in vertices.iter().enumerate() {
+                self.patch.add_border(v, vertices[(i + 1) % vertices.len()]);
+            }
+        }
+        self.border = self.patch.places.len();
+        self.counts.seeds = 0;
+        let mut is_done = self.close()?;
+        match &self.settings.seeds {
+            Seeds::Points(points) => {
+                for &point in points {
+                    is_done = is_done && self.grow_from_point(point.as_dvec3())?;
+                }
+            }
+            Seeds::Sampled { .. } => {
+                let crossings: Vec<_> = self.samples.iter().flat_map(Samples::crossings).collect();
+                for of in crossings {
+                    let outward = (of.outside - of.inside).normalize_or_zero();
+                    if !is_done || self.is_covered(Foot { place: of.place, normal: outward }, 0.2) {
+                        continue;
+                    }
+                    let foot = self.probe.between(of.inside, of.outside).map_err(|miss| self.missed(miss))?;
+                    if !self.is_covered(foot, 0.3) {
+                        is_done = self.grow_from(foot)?;
+                    }
+                }
+            }
+        }
+        Ok(is_done)
+    }
+
+    fn grow_from_point(&mut self, place: DVec3) -> Result<bool, FrontError> {
+        let reach = self.bounds.size().as_dvec3().length();
+        let foot = match self.probe.project(place, reach) {
+            Ok(foot) => foot,
+            Err(Miss::Far) => {
+                return Err(FrontError::Seed { place, reason: "Newton's method reaches no surface from there" });
+            }
+            Err(miss) => return Err(self.missed(miss)),
+        };
+        let (min, max) = (self.bounds.min.as_dvec3(), self.bounds.max.as_dvec3());
+        if foot.place != foot.place.clamp(min, max) {
+            return Err(FrontError::Seed { place, reason: "Newton's method leaves the box from there" });
+        }
+        if self.is_covered(foot, 0.3) { Ok(true) } else { self.grow_from(foot) }
+    }
+
+    /// Whether the mesh has a vertex of the same sheet near a point.
+    fn is_covered(&self, foot: Foot, least: f64) -> bool {
+        let radius = 1.2 * self.sizes.at(foot.place);
+        let mut is_covered = false;
+        self.patch.near.each(foot.place, radius, |v| {
+            let of = self.patch.foot(v);
+            let way = of.place - foot.place;
+            is_covered |= way.length() < radius
+                && of.normal.dot(foot.normal) > least
+                && way.dot(of.normal).abs() < 0.6 * way.length() + 0.1 * radius;
+        });
+        is_covered
+    }
+
+    /// A first triangle round a seed, and all that grows from it.
+    fn grow_from(&mut self, seed: Foot) -> Result<bool, FrontError> {
+        let mut edge = self.sizes.at(seed.place);
+        let corners = loop {
+            match self.first_triangle(seed, edge) {
+                Some(corners) => break corners,
+                None if 0.5 * edge >= self.least => edge = self.sizes.halve(seed.place),
+                // The surface touches the border there, and has nothing inside of the box.
+                None if self.to_border(seed.place) < 1e-2 * self.least => return Ok(true),
+                None => {
+                    let reason = "no triangle fits round it; the part may be smaller than the shortest edge";
+                    return Err(FrontError::Seed { place: seed.place, reason });
+                }
+            }
+        };
+        self.counts.seeds += 1;
+        let corners = corners.map(|foot| self.patch.add_vertex(foot));
+        self.patch.add_triangle(corners);
+        self.wait_round(corners);
+        self.close()
+    }
+
+    fn first_triangle(&self, seed: Foot, edge: f64) -> Option<[Foot; 3]> {
+        let u = seed.normal.any_orthonormal_vector();
+        let v = seed.normal.cross(u);
+        let (min, max) = (self.bounds.min.as_dvec3(), self.bounds.max.as_dvec3());
+        (0..TURNS).find_map(|turn| {
+            let corner = |more: f64| {
+                let angle = f64::from(turn) * std::f64::consts::TAU / f64::from(TURNS) + more;
+                let start = seed.place + edge * (u * angle.cos() + v * angle.sin());
+                let foot = self.probe.project(start, 0.5 * edge).ok()?;
+                let fits = foot.place == foot.place.clamp(min, max) && !self.is_covered(foot, 0.3);
+                (fits && foot.normal.dot(seed.normal) > 0.5).then_some(foot)
+            };
+            let corners = [seed, corner(0.0)?, corner(std::f64::consts::FRAC_PI_3)?];
+            faces(corners, 0.5).then_some(corners)
+        })
+    }
+
+    /// Grows until no edge of the front is left, with repairs where edges are stuck. Whether it is done; if not, the border must be finer.
+    fn close(&mut self) -> Result<bool, FrontError> {
+        for [a, b] in self.patch.front() {
+            self.wait(a, b);
+        }
+        loop {
+            let stuck = self.advance()?;
+            if std::env::var("FRONT_DEBUG").is_ok() && !self.patch.front().is_empty() {
+                let f = self.patch.front();
+                eprintln!("left {} tri {}", f.len(), self.patch.triangle_count());
+                for [a, b] in f.iter().take(30) {
+                    let (x, y) = self.step().free_angles(*a, *b);
+                    eprintln!("  {a}->{b} {:.3} {:.3} len {:.3} angles {:.0} {:.0} out {:?} into {:?}", self.patch.place(*a), self.patch.normal(*a), self.patch.place(*a).distance(self.patch.place(*b)), x.to_degrees(), y.to_degrees(), self.patch.out[*a as usize], self.patch.into[*a as usize]);
+                }
+            }
+            self.counts.closing_triangles += holes::close(&mut self.patch);
+            let place = match (self.patch.front().first(), self.patch.pinched()) {
+                (Some(&[a, b]), _) => 0.5 * (self.patch.place(a) + self.patch.place(b)),
+                (None, Some(v)) => self.patch.place(v),
+                (None, None) => return Ok(true),
+            };
+            let size = self.sizes.at(place);
+            let is_worth = 0.5 * size >= self.least && self.counts.repairs < REPAIRS * (self.counts.restarts + 1);
+            if !is_worth {
+                return Err(self.failure(place, size, &stuck));
+            }
+            self.sizes.halve(place);
+            self.counts.repairs += 1;
+            if self.is_at_border(place, size) && self.counts.restarts < RESTARTS {
+                return Ok(false);
+            }
+            self.patch.remove_round(place, 2.0 * size);
+            for [a, b] in self.patch.front() {
+                self.wait(a, b);
+            }
+        }
+    }
+
+    /// Whether a vertex of the border is near, or the border itself very near, where a curve may have been missed.
+    fn is_at_border(&self, p: DVec3, size: f64) -> bool {
+        let mut is_at = self.to_border(p) < 0.1 * size;
+        self.patch.near.each(p, 2.0 * size, |v| {
+            is_at |= (v as usize) < self.border && self.patch.place(v).distance(p) < 2.0 * size;
+        });
+        is_at
+    }
+
+    fn to_border(&self, p: DVec3) -> f64 {
+        let (min, max) = (self.bounds.min.as_dvec3(), self.bounds.max.as_dvec3());
+        (p - min).min(max - p).min_element()
+    }
+
+    /// Steps until no edge waits. Those that nothing fits are left.
+    fn advance(&mut self) -> Result<Vec<Stuck>, FrontError> {
+        let mut stuck: Vec<Stuck> = Vec::new();
+        while let Some(Reverse((_, _, a, b))) = self.waiting.edges.pop() {
+            if !self.patch.is_front(a, b) {
+                continue;
+            }
+            if self.patch.triangle_count() >= self.settings.most_triangles {
+                let place = 0.5 * (self.patch.place(a) + self.patch.place(b));
+                return Err(FrontError::TooMany { limit: self.settings.most_triangles, place });
+            }
+            let c = match self.step().grow(a, b) {
+                Growth::Point(foot) => self.patch.add_vertex(foot),
+                Growth::Vertex(c) => c,
+                Growth::Nothing(blame) => {
+                    stuck.push(Stuck { edge: [a, b], blame });
+                    continue;
+                }
+            };
+            self.patch.add_triangle([a, b, c]);
+            self.wait_round([a, b, c]);
+        }
+        Ok(stuck)
+    }
+
+    fn step(&self) -> Step<'_> {
+        Step { probe: self.probe, patch: &self.patch, sizes: &self.sizes, bounds: self.bounds }
+    }
+
+    /// Lets the front's edges at three corners wait, whose angles may have changed.
+    fn wait_round(&mut self, corners: [u32; 3]) {
+        for v in corners {
+            for i in 0..self.patch.out[v as usize].len() {
+                self.wait(v, self.patch.out[v as usize][i]);
+            }
+            for i in 0..self.patch.into[v as usize].len() {
+                self.wait(self.patch.into[v as usize][i], v);
+            }
+        }
+    }
+
+    fn wait(&mut self, a: u32, b: u32) {
+        let (at_a, at_b) = self.step().free_angles(a, b);
+        self.waiting.pushed += 1;
+        self.waiting.edges.push(Reverse((at_a.min(at_b) >= ACUTE, self.waiting.pushed, a, b)));
+    }
+
+    fn failure(&self, place: DVec3, edge: f64, stuck: &[Stuck]) -> FrontError {
+        let front = self.patch.front();
+        let left = stuck.iter().filter(|of| front.contains(&of.edge));
+        match left.filter_map(|of| of.blame).next() {
+            Some(miss) => self.missed(miss),
+            None if front.is_empty() => FrontError::Pinched { place },
+            None => FrontError::Unclosed { place, edges: front.len(), edge },
+        }
+    }
+
+    fn missed(&self, miss: Miss) -> FrontError {
+        match miss {
+            Miss::NoNumber(place) => FrontError::NoNumber { place },
+            Miss::Flat(place) => FrontError::NoGradient { place },
+            Miss::Far => FrontError::Seed { place: DVec3::NAN, reason: "Newton's method does not arrive" },
+        }
+    }
+
+    /// The mesh, with the vertices that triangles use.
+    fn grown(mut self) -> Grown {
+        let mut numbers = vec![u32::MAX; self.patch.places.len()];
+        let mut mesh = TriangleMesh::default();
+        for corners in self.patch.triangles() {
+            mesh.triangles.push(corners.map(|v| {
+                let number = &mut numbers[v as usize];
+                if *number == u32::MAX {
+                    *number = mesh.positions.len() as u32;
+                    mesh.positions.push(self.patch.place(v).as_vec3());
+                    mesh.normals.push(self.patch.normal(v).as_vec3());
+                }
+                *number
+            }));
+        }
+        self.counts.evaluations = self.probe.values();
+        self.counts.gradients = self.probe.gradients();
+        Grown { mesh, counts: self.counts }
+    }
+}
+
+impl Front {
+    fn check(&self, bounds: Bounds, isovalue: f32) -> Result<(), FrontError> {
+        let (min, max) = (bounds.min, bounds.max);
+        if !(min.is_finite() && max.is_finite() && min.cmplt(max).all() && (max - min).is_finite()) {
+            return Err(FrontError::Box { min: min.into(), max: max.into() });
+        }
+        if !isovalue.is_finite() {
+            return Err(FrontError::Isovalue { isovalue });
+        }
+        let wrong = |name, value, allowed: String| Err(FrontError::Setting { name, value, allowed });
+        let longest = f64::from(bounds.size().max_element());
+        if !(self.edge > 0.0 && self.edge <= longest) {
+            return wrong("edge", self.edge, format!("above 0 and at most {longest}, the longest side of the box"));
+        }
+        let finest = longest * 1e-5;
+        if self.edge < finest {
+            return wrong("edge", self.edge, format!("at least {finest}, a hundred-thousandth of the box"));
+        }
+        if let Sizing::Curvature { smallest, angle } = self.sizing {
+            if !(smallest >= finest && smallest <= self.edge) {
+                return wrong("smallest", smallest, format!("at least {finest} and at most the edge, {}", self.edge));
+            }
+            if !(angle > 0.0 && angle <= 1.0) {
+                return wrong("angle", angle, "above 0 and at most 1 radian".into());
+            }
+        }
+        match &self.seeds {
+            Seeds::Sampled { cells } if !(1..=512).contains(cells) => {
+                wrong("cells", f64::from(*cells), "from 1 to 512".into())
+            }
+            Seeds::Points(points) => match points.iter().find(|&&p| !(p.cmpge(min) & p.cmple(max)).all()) {
+                Some(p) => Err(FrontError::SeedOutside { place: p.as_dvec3() }),
+                None => Ok(()),
+            },
+            Seeds::Sampled { .. } => Ok(()),
+        }
+    }
+}
