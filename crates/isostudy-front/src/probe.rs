@@ -12,6 +12,11 @@ const LAST_STEP: f64 = 1e-3;
 /// Halvings of a segment whose ends lie on different sides.
 const HALVINGS: u32 = 24;
 
+/// How far round a kink normals are compared, in reaches.
+const MEAN_OVER: f64 = 0.1;
+/// Normals with a greater cosine are one.
+const ALIKE: f64 = 0.9;
+
 /// A field that is asked for values relative to the isovalue, and counts.
 pub(crate) struct Probe<'a> {
     field: &'a dyn StudyField,
@@ -114,6 +119,7 @@ impl<'a> Probe<'a> {
     ) -> Result<Foot, Miss> {
         let mut p = rounded(from);
         let mut value = self.value(p);
+        let mut before: Option<DVec3> = None;
         for _ in 0..STEPS {
             if !value.is_finite() {
                 return Err(Miss::NoNumber(p));
@@ -127,18 +133,38 @@ impl<'a> Probe<'a> {
             let step = (along * (-value / slope)).clamp_length_max(0.5 * reach);
             let next = rounded(p + step);
             if step.length() < LAST_STEP * self.edge {
-                return Ok(Foot { place: next, normal: -gradient.normalize_or(DVec3::Z) });
+                let normal = -gradient.normalize_or(DVec3::Z);
+                let is_kink = before.is_some_and(|before| before.dot(normal) < ALIKE * 0.9);
+                let normal = if is_kink { self.mean_normal(next, MEAN_OVER * reach)? } else { normal };
+                return Ok(Foot { place: next, normal });
             }
             if next.distance(from) > reach {
                 return Err(Miss::Far);
             }
             let there = self.value(next);
             if there.is_finite() && (there > 0.0) != (value > 0.0) && there.abs() > 0.3 * value.abs() {
-                return self.between(p, next);
+                let place = self.root(p, next)?;
+                return Ok(Foot { place, normal: self.mean_normal(place, MEAN_OVER * reach)? });
             }
-            (p, value) = (next, there);
+            (p, value, before) = (next, there, Some(-gradient.normalize_or(DVec3::Z)));
         }
         Err(Miss::Far)
+    }
+
+    /// A point on a crease has no normal; this is the mean of those that differ round it. Elsewhere it is the normal.
+    pub(crate) fn mean_normal(&self, p: DVec3, radius: f64) -> Result<DVec3, Miss> {
+        let first = self.normal(p)?;
+        let u = first.any_orthonormal_vector();
+        let v = first.cross(u);
+        let mut normals = vec![first];
+        for corner in 0..8 {
+            let sign = |bit: u32| if corner >> bit & 1 == 1 { radius } else { -radius };
+            let normal = self.normal(p + sign(0) * u + sign(1) * v + sign(2) * first)?;
+            if normals.iter().all(|other| other.dot(normal) < ALIKE) {
+                normals.push(normal);
+            }
+        }
+        Ok(normals.into_iter().sum::<DVec3>().try_normalize().unwrap_or(first))
     }
 
     /// A root between two points on different sides; `NaN` is outside.

@@ -8,7 +8,7 @@ use glam::DVec3;
 use isostudy_mesh::Bounds;
 
 use crate::patch::Patch;
-use crate::probe::{Foot, Miss, Probe};
+use crate::probe::{Foot, Miss, Probe, rounded};
 use crate::sizes::Sizes;
 
 /// A new point stays so many edges away from vertices.
@@ -17,8 +17,30 @@ const CLEAR_OF_VERTICES: f64 = 0.65;
 const CLEAR_OF_EDGES: f64 = 0.45;
 /// The free angle at an end, in radians, below which no new point is tried first.
 pub(crate) const ACUTE: f64 = 1.47;
-/// Shares of the height of a new triangle that are tried.
-const HEIGHTS: [f64; 3] = [1.0, 0.6, 0.35];
+/// The least height of a new triangle over its edge, in lengths of the edge.
+const LEAST_HEIGHT: f64 = 0.25;
+/// What is tried for an edge, one after the other, with shares of the height.
+const WAYS: [(Way, f64); 6] = [
+    (Way::Newton, 1.0),
+    (Way::Front, 1.0),
+    (Way::Circle, 1.0),
+    (Way::Newton, 0.6),
+    (Way::Circle, 0.6),
+    (Way::Newton, 0.35),
+];
+/// Degrees between points of the circle, and how many to either side.
+const CIRCLE: (f64, u32) = (20.0, 7);
+
+/// How a third corner is looked for.
+#[derive(Clone, Copy)]
+enum Way {
+    /// In the tangent plane, and from there by Newton's method.
+    Newton,
+    /// On a circle round the edge: past a crease, where Newton's method leads back to it.
+    Circle,
+    /// Among the front's vertices.
+    Front,
+}
 
 /// How much a surface may bend along an edge.
 #[derive(Clone, Copy)]
@@ -37,7 +59,7 @@ struct Bend {
 
 const SMOOTH: Bend = Bend { normals: 0.4, rise: 0.6, angle: 0.26, triangle: 0.5, longest: 1.8 };
 /// A right-angled crease passes.
-const CREASED: Bend = Bend { normals: -0.15, rise: 0.85, angle: 0.03, triangle: -0.25, longest: 2.6 };
+const CREASED: Bend = Bend { normals: -0.15, rise: 1.01, angle: 0.03, triangle: -0.25, longest: 2.6 };
 
 /// What an edge of the front grows.
 pub(crate) enum Growth {
@@ -75,22 +97,25 @@ impl Step<'_> {
     pub(crate) fn grow(&self, a: u32, b: u32) -> Growth {
         let Some(round) = self.round(a, b) else { return Growth::Nothing(None) };
         let (at_a, at_b) = self.free_angles(a, b);
-        let mut blame = None;
         if at_a.min(at_b) < ACUTE
             && let Some(v) = self.vertex(&round, SMOOTH)
         {
             return Growth::Vertex(v);
         }
-        for (i, height) in HEIGHTS.into_iter().enumerate() {
-            match self.point(&round, at_a, at_b, height) {
+        let mut blame = None;
+        for (way, height) in WAYS {
+            let found = match way {
+                Way::Newton => self.point(&round, at_a, at_b, height),
+                Way::Circle => self.point_on_circle(&round, height),
+                Way::Front => match self.vertex(&round, SMOOTH) {
+                    Some(v) => return Growth::Vertex(v),
+                    None => continue,
+                },
+            };
+            match found {
                 Ok(Some(foot)) => return Growth::Point(foot),
                 Ok(None) | Err(Miss::Far) => {}
                 Err(miss) => blame = Some(miss),
-            }
-            if i == 0
-                && let Some(v) = self.vertex(&round, SMOOTH)
-            {
-                return Growth::Vertex(v);
             }
         }
         self.vertex(&round, CREASED).map_or(Growth::Nothing(blame), Growth::Vertex)
@@ -134,11 +159,35 @@ impl Step<'_> {
             return Ok(None);
         }
         let foot = self.probe.project(start, 0.6 * round.size.max(round.length))?;
+        Ok(self.fits(round, foot).then_some(foot))
+    }
+
+    /// A new point where the surface next crosses a circle round the edge.
+    fn point_on_circle(&self, round: &Round, height: f64) -> Result<Option<Foot>, Miss> {
+        let radius = 0.866 * round.size.clamp(0.6 * round.length, 1.8 * round.length) * height;
+        let at = |turn: f64| {
+            let (sin, cos) = turn.to_radians().sin_cos();
+            rounded(round.middle + radius * (cos * round.left + sin * round.normal))
+        };
+        let is_inside = self.probe.value(at(0.0)) > 0.0;
+        let step = if is_inside { CIRCLE.0 } else { -CIRCLE.0 };
+        let mut turns = (1..=CIRCLE.1).map(|i| f64::from(i) * step);
+        let Some(turn) = turns.find(|&turn| (self.probe.value(at(turn)) > 0.0) != is_inside) else {
+            return Ok(None);
+        };
+        let place = self.probe.root(at(turn - step), at(turn))?;
+        let foot = Foot { place, normal: self.probe.mean_normal(place, 0.1 * radius)? };
+        Ok(self.fits(round, foot).then_some(foot))
+    }
+
+    fn fits(&self, round: &Round, foot: Foot) -> bool {
         let ends = [round.a, round.b].map(|v| self.patch.foot(v));
-        let fits = ends.iter().all(|end| bends_within(*end, foot, CREASED))
+        let way = foot.place - round.middle;
+        let height = (way - round.along * way.dot(round.along)).length();
+        height > LEAST_HEIGHT * round.length
+            && ends.iter().all(|end| bends_within(*end, foot, CREASED))
             && faces([ends[0], ends[1], foot], CREASED.triangle)
-            && self.has_room(round, foot);
-        Ok(fits.then_some(foot))
+            && self.has_room(round, foot)
     }
 
     /// The third corner: free angles are shared evenly by triangles of about 60 degrees, and the length comes near the wanted one.
@@ -223,15 +272,18 @@ impl Step<'_> {
         if v.is_some_and(|v| !patch.has_room(v, a, b)) {
             return false;
         }
-        let flat = |q: DVec3| [(q - round.middle).dot(round.along), (q - round.middle).dot(round.left)];
-        let rise = |q: DVec3| (q - round.middle).dot(round.normal);
+        // The triangle's own plane: past a crease that of the edge would turn it over.
+        let normal = round.along.cross(p - round.middle).try_normalize().unwrap_or(round.normal);
+        let left = normal.cross(round.along);
+        let flat = |q: DVec3| [(q - round.middle).dot(round.along), (q - round.middle).dot(left)];
+        let rise = |q: DVec3| (q - round.middle).dot(normal);
         let apart = 0.7 * round.size.max(round.length);
         let sides = [(round.a, a.1), (round.b, b.1)];
         let corners = [flat(a.1), flat(b.1), flat(p)];
         let is_corner = |w: u32| w == round.a || w == round.b || Some(w) == v;
         round.front.iter().all(|&[u, w]| {
             let ends = [patch.place(u), patch.place(w)];
-            if (0.5 * (rise(ends[0]) + rise(ends[1])) - 0.5 * rise(p)).abs() > apart {
+            if (0.5 * (rise(ends[0]) + rise(ends[1]))).abs() > apart {
                 return true;
             }
             let edge = ends.map(flat);
