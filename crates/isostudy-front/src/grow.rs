@@ -22,6 +22,8 @@ const HALVINGS: i32 = 4;
 const REPAIRS: u64 = 200;
 /// How often all is begun again with a finer border.
 const RESTARTS: u64 = 5;
+/// A loop that extends farther, in edges, is repaired piece by piece.
+const MOST_EXTENT: f64 = 4.0;
 /// Directions in which a first triangle is tried.
 const TURNS: u32 = 6;
 
@@ -179,7 +181,7 @@ impl Grower<'_> {
         let corners = loop {
             match self.first_triangle(seed, edge) {
                 Some(corners) => break corners,
-                None if 0.5 * edge >= self.least => edge = self.sizes.halve(seed.place),
+                None if 0.5 * edge >= self.least => edge = self.sizes.halve(seed.place, 0.0),
                 // The surface touches the border there, and has nothing inside of the box.
                 None if self.to_border(seed.place) < 1e-2 * self.least => return Ok(true),
                 None => {
@@ -219,35 +221,54 @@ impl Grower<'_> {
         }
         loop {
             let stuck = self.advance()?;
-            if std::env::var("FRONT_DEBUG").is_ok() && !self.patch.front().is_empty() {
-                let f = self.patch.front();
-                eprintln!("left {} tri {}", f.len(), self.patch.triangle_count());
-                for [a, b] in f.iter().take(30) {
-                    let (x, y) = self.step().free_angles(*a, *b);
-                    eprintln!("  {a}->{b} {:.3} {:.3} len {:.3} angles {:.0} {:.0} out {:?} into {:?}", self.patch.place(*a), self.patch.normal(*a), self.patch.place(*a).distance(self.patch.place(*b)), x.to_degrees(), y.to_degrees(), self.patch.out[*a as usize], self.patch.into[*a as usize]);
+            self.counts.closing_triangles += holes::close(&mut self.patch, |_| false);
+            let places = self.faulty();
+            if places.is_empty() {
+                return Ok(true);
+            }
+            let mut is_repaired = false;
+            for &(centre, extent) in &places {
+                let size = self.sizes.at(centre);
+                if 0.5 * size < self.least || self.counts.repairs >= REPAIRS * (self.counts.restarts + 1) {
+                    continue;
                 }
+                let is_at_border = self.is_at_border(centre, size);
+                self.sizes.halve(centre, extent);
+                self.counts.repairs += 1;
+                if is_at_border && self.counts.restarts < RESTARTS {
+                    return Ok(false);
+                }
+                self.patch.remove_round(centre, extent + 1.5 * size);
+                is_repaired = true;
             }
-            self.counts.closing_triangles += holes::close(&mut self.patch);
-            let place = match (self.patch.front().first(), self.patch.pinched()) {
-                (Some(&[a, b]), _) => 0.5 * (self.patch.place(a) + self.patch.place(b)),
-                (None, Some(v)) => self.patch.place(v),
-                (None, None) => return Ok(true),
-            };
-            let size = self.sizes.at(place);
-            let is_worth = 0.5 * size >= self.least && self.counts.repairs < REPAIRS * (self.counts.restarts + 1);
-            if !is_worth {
-                return Err(self.failure(place, size, &stuck));
+            if !is_repaired {
+                self.counts.closing_triangles += holes::close(&mut self.patch, |_| true);
+                return match self.faulty().first() {
+                    None => Ok(true),
+                    Some(&(place, _)) => Err(self.failure(place, self.sizes.at(place), &stuck)),
+                };
             }
-            self.sizes.halve(place);
-            self.counts.repairs += 1;
-            if self.is_at_border(place, size) && self.counts.restarts < RESTARTS {
-                return Ok(false);
-            }
-            self.patch.remove_round(place, 2.0 * size);
             for [a, b] in self.patch.front() {
                 self.wait(a, b);
             }
         }
+    }
+
+    /// Where the front is still open, and where sheets meet in a vertex: places, and how far they extend.
+    fn faulty(&self) -> Vec<(DVec3, f64)> {
+        let of_loop = |corners: Vec<u32>| {
+            let places = corners.iter().map(|&v| self.patch.place(v));
+            let centre = places.clone().sum::<DVec3>() / corners.len() as f64;
+            let extent = places.map(|p| p.distance(centre)).fold(0.0, f64::max);
+            let edge = self.sizes.at(centre);
+            if extent < MOST_EXTENT * edge { (centre, extent) } else { (self.patch.place(corners[0]), edge) }
+        };
+        let mut places: Vec<_> = holes::loops(&self.patch).into_iter().map(of_loop).collect();
+        if places.is_empty() {
+            places.extend(self.patch.front().first().map(|of| (self.patch.place(of[0]), self.settings.edge)));
+            places.extend(self.patch.pinched().map(|v| (self.patch.place(v), 0.0)));
+        }
+        places
     }
 
     /// Whether a vertex of the border is near, or the border itself very near, where a curve may have been missed.

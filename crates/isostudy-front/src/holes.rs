@@ -8,11 +8,12 @@ use crate::step::faces;
 /// The most edges of a loop that is closed.
 const MOST_EDGES: usize = 16;
 
-/// Closes the loops that can be. How many triangles it took.
-pub(crate) fn close(patch: &mut Patch) -> u64 {
+/// Closes the loops that can be. How many triangles it took. Of a loop that is `forced`, triangles may face any way: they are slivers
+/// in creases, whose normal says nothing.
+pub(crate) fn close(patch: &mut Patch, forced: impl Fn(&[u32]) -> bool) -> u64 {
     let mut triangles = 0;
     for corners in loops(patch) {
-        let Some(ears) = ears(patch, &corners) else { continue };
+        let Some(ears) = ears(patch, &corners, forced(&corners)) else { continue };
         for ear in ears {
             // An earlier loop or ear may have taken the edge.
             if patch.is_free(ear) {
@@ -25,7 +26,7 @@ pub(crate) fn close(patch: &mut Patch) -> u64 {
 }
 
 /// The loops of the front, each as its vertices, by sectors.
-fn loops(patch: &Patch) -> Vec<Vec<u32>> {
+pub(crate) fn loops(patch: &Patch) -> Vec<Vec<u32>> {
     let mut left = patch.front();
     let mut loops = Vec::new();
     while let Some(&[a, b]) = left.first() {
@@ -45,7 +46,7 @@ fn loops(patch: &Patch) -> Vec<Vec<u32>> {
 }
 
 /// The triangulation of a loop with the least area, of triangles that face the way of their corners.
-fn ears(patch: &Patch, corners: &[u32]) -> Option<Vec<[u32; 3]>> {
+fn ears(patch: &Patch, corners: &[u32], forced: bool) -> Option<Vec<[u32; 3]>> {
     let n = corners.len();
     if !(3..=MOST_EDGES).contains(&n) {
         return None;
@@ -61,7 +62,7 @@ fn ears(patch: &Patch, corners: &[u32]) -> Option<Vec<[u32; 3]>> {
             let (from, to) = (corners[p], corners[q]);
             is_inner(p, q) && (patch.is_used(from, to) || patch.is_used(to, from))
         };
-        if is_taken(i, k) || is_taken(k, j) || is_taken(j, i) || !faces(ear.map(|v| patch.foot(v)), -0.3) {
+        if is_taken(i, k) || is_taken(k, j) || is_taken(j, i) || !(forced || faces(ear.map(|v| patch.foot(v)), -0.3)) {
             return f64::INFINITY;
         }
         DVec3::length((b - a).cross(c - a))

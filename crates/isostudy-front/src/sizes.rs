@@ -38,10 +38,10 @@ impl Sizes {
         })
     }
 
-    /// Halves the length round a place. What it is now.
-    pub(crate) fn halve(&mut self, centre: DVec3) -> f64 {
+    /// Halves the length round a place that extends so far. What it is now.
+    pub(crate) fn halve(&mut self, centre: DVec3, extent: f64) -> f64 {
         let edge = 0.5 * self.at(centre);
-        self.finer.push(Finer { centre, radius: 5.0 * edge, edge });
+        self.finer.push(Finer { centre, radius: extent + 4.0 * edge, edge });
         edge
     }
 }
