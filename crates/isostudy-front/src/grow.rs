@@ -19,7 +19,7 @@ use crate::{border, holes};
 /// How often the length is halved at one place.
 const HALVINGS: i32 = 4;
 /// How many places are repaired between two beginnings.
-const REPAIRS: u64 = 200;
+const REPAIRS: u64 = 60;
 /// How often all is begun again with a finer border.
 const RESTARTS: u64 = 5;
 /// A loop that extends farther, in edges, is repaired piece by piece.

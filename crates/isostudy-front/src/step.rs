@@ -234,7 +234,7 @@ impl Step<'_> {
     fn vertex(&self, round: &Round, bend: Bend) -> Option<u32> {
         let patch = self.patch;
         let (from, to) = (patch.place(round.a), patch.place(round.b));
-        let longest = bend.longest * round.size;
+        let longest = (bend.longest * round.size).max(1.1 * round.length);
         let mut found: Vec<(f64, u32)> = Vec::new();
         for &v in &round.vertices {
             let p = patch.place(v);
