@@ -180,11 +180,12 @@ impl Grower<'_> {
         let mut edge = self.sizes.at(seed.place);
         let corners = loop {
             match self.first_triangle(seed, edge) {
-                Some(corners) => break corners,
-                None if 0.5 * edge >= self.least => edge = self.sizes.halve(seed.place, 0.0),
+                Ok(corners) => break corners,
+                Err(_) if 0.5 * edge >= self.least => edge = self.sizes.halve(seed.place, 0.0),
                 // The surface touches the border there, and has nothing inside of the box.
-                None if self.to_border(seed.place) < 1e-2 * self.least => return Ok(true),
-                None => {
+                Err(_) if self.to_border(seed.place) < 1e-2 * self.least => return Ok(true),
+                Err(Some(miss)) => return Err(self.missed(miss)),
+                Err(None) => {
                     let reason = "no triangle fits round it; the part may be smaller than the shortest edge";
                     return Err(FrontError::Seed { place: seed.place, reason });
                 }
@@ -197,21 +198,34 @@ impl Grower<'_> {
         self.close()
     }
 
-    fn first_triangle(&self, seed: Foot, edge: f64) -> Option<[Foot; 3]> {
+    /// A triangle with a corner at the seed. If there is none, what the field has to do with it.
+    fn first_triangle(&self, seed: Foot, edge: f64) -> Result<[Foot; 3], Option<Miss>> {
         let u = seed.normal.any_orthonormal_vector();
         let v = seed.normal.cross(u);
         let (min, max) = (self.bounds.min.as_dvec3(), self.bounds.max.as_dvec3());
-        (0..TURNS).find_map(|turn| {
-            let corner = |more: f64| {
-                let angle = f64::from(turn) * std::f64::consts::TAU / f64::from(TURNS) + more;
-                let start = seed.place + edge * (u * angle.cos() + v * angle.sin());
-                let foot = self.probe.project(start, 0.5 * edge).ok()?;
-                let fits = foot.place == foot.place.clamp(min, max) && !self.is_covered(foot, 0.3);
-                (fits && foot.normal.dot(seed.normal) > 0.5).then_some(foot)
+        let mut blame = None;
+        for turn in 0..TURNS {
+            let corner = |sixths: u32| {
+                let angle = f64::from(turn + sixths) * std::f64::consts::TAU / f64::from(TURNS);
+                self.probe.project(seed.place + edge * (u * angle.cos() + v * angle.sin()), 0.5 * edge)
             };
-            let corners = [seed, corner(0.0)?, corner(std::f64::consts::FRAC_PI_3)?];
-            faces(corners, 0.5).then_some(corners)
-        })
+            let (second, third) = match (corner(0), corner(1)) {
+                (Ok(second), Ok(third)) => (second, third),
+                (Err(miss), _) | (_, Err(miss)) => {
+                    blame = blame.or(Some(miss).filter(|miss| *miss != Miss::Far));
+                    continue;
+                }
+            };
+            let fits = |foot: Foot| {
+                foot.place == foot.place.clamp(min, max)
+                    && !self.is_covered(foot, 0.3)
+                    && foot.normal.dot(seed.normal) > 0.5
+            };
+            if fits(second) && fits(third) && faces([seed, second, third], 0.5) {
+                return Ok([seed, second, third]);
+            }
+        }
+        Err(blame)
     }
 
     /// Grows until no edge of the front is left, with repairs where edges are stuck. Whether it is done; if not, the border must be finer.

@@ -19,8 +19,8 @@ pub(crate) struct Crossing {
     pub(crate) outside: DVec3,
     /// By interpolation.
     pub(crate) place: DVec3,
-    /// Both ends, with their numbers.
-    pub(crate) ends: [(usize, DVec3); 2],
+    /// The numbers of both ends.
+    pub(crate) ends: [usize; 2],
 }
 
 impl Samples {
@@ -59,11 +59,11 @@ impl Samples {
                 }
                 let mut beyond = at;
                 beyond[axis] += 1;
-                let ends = [(i, self.point(at)), (j, self.point(beyond))];
+                let ends = [at, beyond].map(|at| self.point(at));
                 let share = f64::from(a / (a - b));
                 let share = if share.is_finite() { share } else { 0.5 };
-                let [inside, outside] = if a > 0.0 { [0, 1] } else { [1, 0] }.map(|of: usize| ends[of].1);
-                Some(Crossing { inside, outside, place: ends[0].1.lerp(ends[1].1, share), ends })
+                let [inside, outside] = if a > 0.0 { [0, 1] } else { [1, 0] }.map(|of: usize| ends[of]);
+                Some(Crossing { inside, outside, place: ends[0].lerp(ends[1], share), ends: [i, j] })
             })
         })
     }

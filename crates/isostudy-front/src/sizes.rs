@@ -71,11 +71,10 @@ impl Guide {
             let Ok(foot) = probe.between(crossing.inside, crossing.outside) else { continue };
             let curvature = curvature(probe, foot, 0.25 * smallest);
             let length = (angle / curvature.max(1e-12)).clamp(smallest, edge);
-            for (i, p) in crossing.ends {
-                let there = length + GROWTH * p.distance(foot.place);
-                if there < lengths[i] {
-                    lengths[i] = there;
-                    waiting.push((Reverse(there.to_bits()), i));
+            for i in crossing.ends {
+                if length < lengths[i] {
+                    lengths[i] = length;
+                    waiting.push((Reverse(length.to_bits()), i));
                 }
             }
         }
