@@ -71,6 +71,12 @@ pub enum FrontError {
         /// The shortest length that was tried there.
         edge: f64,
     },
+    /// A triangle lies off the surface, as one does that cuts off a narrow neck.
+    #[error("a triangle at {} lies off the surface, which may be narrower there than the edges", at(.place))]
+    Astray {
+        /// Its middle.
+        place: DVec3,
+    },
     /// Sheets of triangles meet in one vertex.
     #[error("sheets of triangles meet in one vertex at {}", at(.place))]
     Pinched {

@@ -24,6 +24,10 @@ const REPAIRS: u64 = 60;
 const RESTARTS: u64 = 5;
 /// A loop that extends farther, in edges, is repaired piece by piece.
 const MOST_EXTENT: f64 = 4.0;
+/// A triangle is tried if normals of its corners have a smaller cosine.
+const BENT: f64 = 0.75;
+/// Between samples on the box's faces, in edges.
+const BORDER_STEP: f64 = 0.5;
 /// Directions in which a first triangle is tried.
 const TURNS: u32 = 6;
 
@@ -70,11 +74,12 @@ pub fn grow(
     let least = smallest * 0.5_f64.powi(HALVINGS);
     let patch = Patch::new(bounds, settings.edge);
     let counts = Counts::default();
-    let mut grower = Grower { probe: &probe, samples, settings, bounds, sizes, least, patch, border: 0, waiting: Waiting::default(), counts };
+    let mut grower = Grower { probe: &probe, samples, settings, bounds, sizes, least, patch, tried: 0, border: 0, waiting: Waiting::default(), counts };
     while !grower.attempt()? {
         grower.counts.restarts += 1;
         grower.patch = Patch::new(bounds, settings.edge);
         grower.waiting = Waiting::default();
+        grower.tried = 0;
     }
     Ok(grower.grown())
 }
@@ -87,6 +92,8 @@ struct Grower<'a> {
     sizes: Sizes,
     least: f64,
     patch: Patch,
+    /// So many triangles, the first, were tried by [`astray`](Self::astray).
+    tried: usize,
     /// So many vertices, the first, lie on the border.
     border: usize,
     waiting: Waiting,
@@ -110,7 +117,7 @@ impl Grower<'_> {
     /// Grows all. Whether it is done; if not, the border must be finer.
     fn attempt(&mut self) -> Result<bool, FrontError> {
         let step = self.sizes.at(0.5 * (self.bounds.min + self.bounds.max).as_dvec3()).max(self.settings.edge);
-        let step = step * 0.5_f64.powi(self.counts.restarts as i32);
+        let step = BORDER_STEP * step * 0.5_f64.powi(self.counts.restarts as i32);
         let loops = border::loops(self.probe, self.bounds, &self.sizes, step).map_err(|miss| self.missed(miss))?;
         self.counts.border_loops = loops.len() as u64;
         for curve in loops {
@@ -236,7 +243,10 @@ impl Grower<'_> {
         loop {
             let stuck = self.advance()?;
             self.counts.closing_triangles += holes::close(&mut self.patch, |_| false);
-            let places = self.faulty();
+            let mut places = self.faulty();
+            if places.is_empty() {
+                places = self.astray();
+            }
             if places.is_empty() {
                 return Ok(true);
             }
@@ -256,10 +266,12 @@ impl Grower<'_> {
                 is_repaired = true;
             }
             if !is_repaired {
+                let was_closed = self.patch.front().is_empty() && self.patch.pinched().is_none();
                 self.counts.closing_triangles += holes::close(&mut self.patch, |_| true);
-                return match self.faulty().first() {
-                    None => Ok(true),
-                    Some(&(place, _)) => Err(self.failure(place, self.sizes.at(place), &stuck)),
+                return match (self.faulty().first(), places.first()) {
+                    (Some(&(place, _)), _) => Err(self.failure(place, self.sizes.at(place), &stuck)),
+                    (None, Some(&(place, _))) if was_closed => Err(FrontError::Astray { place }),
+                    _ => Ok(true),
                 };
             }
             for [a, b] in self.patch.front() {
@@ -281,6 +293,30 @@ impl Grower<'_> {
         if places.is_empty() {
             places.extend(self.patch.front().first().map(|of| (self.patch.place(of[0]), self.settings.edge)));
             places.extend(self.patch.pinched().map(|v| (self.patch.place(v), 0.0)));
+        }
+        places
+    }
+
+    /// Triangles since the last call that lie off the surface, as those do that cut off a neck or bridge a gap: their middles, and how
+    /// far they extend. Those whose corners' normals agree are not tried.
+    fn astray(&mut self) -> Vec<(DVec3, f64)> {
+        let (new, after) = self.patch.since(self.tried);
+        self.tried = after;
+        let is_bent = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| self.patch.normal(v));
+            a.dot(b).min(b.dot(c)).min(c.dot(a)) < BENT
+        };
+        let mut places = Vec::new();
+        for t in new.into_iter().filter(is_bent) {
+            let corners = t.map(|v| self.patch.foot(v));
+            let [a, b, c] = corners.map(|corner| corner.place);
+            let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a).normalize_or_zero());
+            let extent = a.distance(middle).max(b.distance(middle)).max(c.distance(middle));
+            let is_sliver = (b - a).cross(c - a).length() < 0.2 * extent * extent;
+            let foot = self.probe.project(middle, 0.8 * extent);
+            if !is_sliver && !foot.is_ok_and(|foot| foot.normal.dot(normal) > 0.2) {
+                places.push((middle, extent));
+            }
         }
         places
     }

@@ -45,6 +45,12 @@ impl Patch {
         self.triangles.iter().copied().filter(|t| *t != GONE)
     }
 
+    /// The triangles from number `first` on that are still there, and the number after the last.
+    pub(crate) fn since(&self, first: usize) -> (Vec<[u32; 3]>, usize) {
+        let new = self.triangles[first..].iter().copied().filter(|t| *t != GONE).collect();
+        (new, self.triangles.len())
+    }
+
     pub(crate) fn triangle_count(&self) -> usize {
         self.alive
     }

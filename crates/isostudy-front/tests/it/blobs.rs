@@ -52,7 +52,7 @@ fn compare(seeds: std::ops::Range<u64>) -> (u64, u64) {
                 }
                 right += 1;
             }
-            Err(FrontError::Unclosed { place, .. } | FrontError::Pinched { place }) => {
+            Err(FrontError::Unclosed { place, .. } | FrontError::Pinched { place } | FrontError::Astray { place }) => {
                 assert!(place.abs().max_element() <= 1.0, "{seed}");
                 println!("seed {seed} is refused at {place}");
                 refused += 1;
