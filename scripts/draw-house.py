@@ -31,6 +31,7 @@ ONLY = {
     "isostudy-expression": {"isostudy"},
     "isostudy-volume": {"isostudy"},
     "isostudy-grid": {"isostudy"},
+    "isostudy-front": {"isostudy"},
     "isostudy-program": {"isostudy"},
     "isostudy-scattered": {"isostudy"},
 }
@@ -41,6 +42,7 @@ KNOWS = {
     "isostudy-foreign": set(),
     "isostudy-volume": {"isostudy-foreign"},
     "isostudy-grid": {"isostudy-foreign", "isostudy-mesh", "isostudy-field"},
+    "isostudy-front": {"isostudy-mesh", "isostudy-field"},
     "isostudy-design": {"isostudy-foreign"},
     "isostudy-table": set(),
     "isostudy-statistics": set(),

@@ -313,8 +313,8 @@ impl Grower<'_> {
             let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a).normalize_or_zero());
             let extent = a.distance(middle).max(b.distance(middle)).max(c.distance(middle));
             let is_sliver = (b - a).cross(c - a).length() < 0.2 * extent * extent;
-            let foot = self.probe.project(middle, 0.8 * extent);
-            if !is_sliver && !foot.is_ok_and(|foot| foot.normal.dot(normal) > 0.2) {
+            let foot = self.probe.project(middle, 0.65 * extent);
+            if !is_sliver && !foot.is_ok_and(|foot| foot.normal.dot(normal) > 0.35) {
                 places.push((middle, extent));
             }
         }

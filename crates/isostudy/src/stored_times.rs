@@ -17,8 +17,8 @@ use std::time::Instant;
 /// Times a configuration from the samples at the corners of its object's cubes: the whole mesh, then chunks of so many cells a side,
 /// 0 for none, and edits as [`chunk_times`](crate::chunk_times::chunk_times) has them. Each number is of one extraction on one thread, after one that is not counted.
 /// Every method is given the same samples. One that asks for values or gradients between them has them by trilinear interpolation, which
-/// is in its time. `None` for meshes out of files, and for
-/// the cells of a grid, whose values are stored anyway.
+/// is in its time. `None` for meshes out of files, for
+/// the cells of a grid, whose values are stored anyway, and for fronts, which ask for the field between samples.
 ///
 /// # Errors
 /// If anything cannot be extracted.
@@ -26,7 +26,7 @@ pub(crate) fn stored_times(prepared: &Prepared<'_>, cells: u32, rounds: u32) -> 
     match &prepared.recipe {
         Recipe::Extractor(_) => of_extractor(prepared, cells, rounds),
         Recipe::Program(program) => of_program(prepared, program, rounds).map(Some),
-        Recipe::Meshes(_) | Recipe::GridCells => Ok(None),
+        Recipe::Meshes(_) | Recipe::GridCells | Recipe::Front(_) => Ok(None),
     }
 }
 

@@ -184,7 +184,9 @@ pub(super) fn timed(study: &Study) -> Result<Vec<&Configuration>> {
     for configuration in &study.configurations {
         match recipe(study, configuration.id.method, Purpose::Benchmark)? {
             Recipe::Meshes(_) => {}
-            Recipe::Extractor(_) | Recipe::Program(_) | Recipe::GridCells => timed.push(configuration),
+            Recipe::Extractor(_) | Recipe::Program(_) | Recipe::GridCells | Recipe::Front(_) => {
+                timed.push(configuration);
+            }
         }
     }
     Ok(timed)
