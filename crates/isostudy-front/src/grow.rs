@@ -20,6 +20,10 @@ use crate::{border, holes};
 const HALVINGS: i32 = 4;
 /// How many places are repaired between two beginnings.
 const REPAIRS: u64 = 60;
+/// How many rounds of repairs may go by without fewer faulty places than ever before.
+const MOST_ROUNDS: u32 = 6;
+/// The most triangles per cube of an edge's length.
+const MOST_IN_CELL: f64 = 40.0;
 /// How often all is begun again with a finer border.
 const RESTARTS: u64 = 5;
 /// A loop that extends farther, in edges, is repaired piece by piece.
@@ -72,9 +76,13 @@ pub fn grow(
     };
     let sizes = Sizes::new(settings.edge, guide);
     let least = smallest * 0.5_f64.powi(HALVINGS);
+    // No surface whose sheets are an edge apart has more.
+    let cells = (bounds.size().as_dvec3() / settings.edge + 1.0).element_product();
+    let most = MOST_IN_CELL * cells * (settings.edge / smallest).powi(2);
+    let most_triangles = settings.most_triangles.min(most as usize);
     let patch = Patch::new(bounds, settings.edge);
     let counts = Counts::default();
-    let mut grower = Grower { probe: &probe, samples, settings, bounds, sizes, least, patch, tried: 0, border: 0, waiting: Waiting::default(), counts };
+    let mut grower = Grower { probe: &probe, samples, settings, bounds, sizes, least, most_triangles, patch, tried: 0, border: 0, waiting: Waiting::default(), counts };
     while !grower.attempt()? {
         grower.counts.restarts += 1;
         grower.patch = Patch::new(bounds, settings.edge);
@@ -91,6 +99,7 @@ struct Grower<'a> {
     bounds: Bounds,
     sizes: Sizes,
     least: f64,
+    most_triangles: usize,
     patch: Patch,
     /// So many triangles, the first, were tried by [`astray`](Self::astray).
     tried: usize,
@@ -240,6 +249,7 @@ impl Grower<'_> {
         for [a, b] in self.patch.front() {
             self.wait(a, b);
         }
+        let (mut fewest, mut rounds) = (usize::MAX, 0);
         loop {
             let stuck = self.advance()?;
             self.counts.closing_triangles += holes::close(&mut self.patch, |_| false);
@@ -250,8 +260,11 @@ impl Grower<'_> {
             if places.is_empty() {
                 return Ok(true);
             }
+            // Repairs that only move the fault elsewhere end.
+            (fewest, rounds) = if places.len() < fewest { (places.len(), 0) } else { (fewest, rounds + 1) };
+            let may_repair = rounds < MOST_ROUNDS;
             let mut is_repaired = false;
-            for &(centre, extent) in &places {
+            for &(centre, extent) in places.iter().filter(|_| may_repair) {
                 let size = self.sizes.at(centre);
                 if 0.5 * size < self.least || self.counts.repairs >= REPAIRS * (self.counts.restarts + 1) {
                     continue;
@@ -342,9 +355,9 @@ impl Grower<'_> {
             if !self.patch.is_front(a, b) {
                 continue;
             }
-            if self.patch.triangle_count() >= self.settings.most_triangles {
+            if self.patch.triangle_count() >= self.most_triangles {
                 let place = 0.5 * (self.patch.place(a) + self.patch.place(b));
-                return Err(FrontError::TooMany { limit: self.settings.most_triangles, place });
+                return Err(FrontError::TooMany { limit: self.most_triangles, place });
             }
             let c = match self.step().grow(a, b) {
                 Growth::Point(foot) => self.patch.add_vertex(foot),

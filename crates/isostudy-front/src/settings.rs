@@ -11,7 +11,8 @@ pub struct Front {
     pub sizing: Sizing,
     /// Where parts of the surface are begun that stay clear of the box's faces.
     pub seeds: Seeds,
-    /// The most triangles, those included that repairs take away again; growth ends with an error there.
+    /// The most triangles at a time; growth ends with an error there, or where there are 40 for each cube of an edge's length that fits
+    /// into the box.
     pub most_triangles: usize,
 }
 
