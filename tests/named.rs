@@ -108,6 +108,7 @@ fn what_is_no_recipe_is_refused_with_its_place_and_what_is_allowed() {
         ("{ kind = \"program\", command = [\"a\"] }".into(), &["kind = \"program\"", "of a study"]),
         ("{ kind = \"meshes\", files = {} }".into(), &["kind = \"meshes\"", "of a study"]),
         ("{ kind = \"grid-cells\" }".into(), &["kind = \"grid-cells\"", "--grid"]),
+        ("{ kind = \"advancing-front\" }".into(), &["kind = \"advancing-front\"", "of a study"]),
     ] {
         let error = refused(&folder, &recipe);
         assert!(
@@ -251,8 +252,9 @@ fn quoted(message: &str) -> Vec<String> {
 fn the_page_has_the_keys_and_names_of_every_kind_of_method() {
     let on_the_page = sections().into_iter().filter(|section| section.table == "methods.recipe");
     let on_the_page: BTreeSet<String> = on_the_page.filter_map(|section| section.kind).collect();
-    // A study hands the last three on to others.
-    let all = kinds().iter().map(|kind| kind.name).chain(["program", "meshes", "grid-cells"]);
+    // The last four are the study's own.
+    let all =
+        kinds().iter().map(|kind| kind.name).chain(["program", "meshes", "grid-cells", "advancing-front"]);
     assert_eq!(on_the_page, all.map(str::to_owned).collect());
     for kind in kinds() {
         has_the_keys_and_names_of(kind.name);

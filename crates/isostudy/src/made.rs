@@ -50,7 +50,7 @@ impl Prepared<'_> {
     pub(crate) fn missed(&self) -> Option<String> {
         match &self.recipe {
             Recipe::Extractor(method) => seeds::missed(method),
-            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::GridCells => None,
+            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::GridCells | Recipe::Front(_) => None,
         }
     }
 
@@ -122,6 +122,13 @@ impl Prepared<'_> {
                 let mesh = self.on_own_cells()?.mesh;
                 mesh_file::check_lies_in(&mesh, &self.grid)?;
                 Made { counts: records::counts_of_mesh(&mesh, None), mesh, program: None }
+            }
+            Recipe::Front(front) => {
+                let mut kept = FieldCache::default();
+                let field = Counted::new(self.field, &mut kept);
+                let mesh = front.grow(&field, &self.grid, self.isovalue)?.mesh;
+                let counts = records::with_calls(records::counts_of_mesh(&mesh, None), &field);
+                Made { counts, mesh, program: None }
             }
         })
     }

@@ -15,6 +15,7 @@ mod error_colours;
 mod fields;
 mod file_samples;
 mod finishing;
+mod front;
 mod grid_file;
 mod help;
 mod input;

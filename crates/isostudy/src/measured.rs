@@ -101,6 +101,16 @@ impl Measured for Clock<'_> {
                 let stages = StageSeconds { geometry_s, finishing_s, ..StageSeconds::default() };
                 Ok(Timed { stages, counters: Counters::default() })
             }
+            Recipe::Front(front) => {
+                let began = Instant::now();
+                let grown = front.grow(prepared.field, &prepared.grid, prepared.isovalue);
+                let grown = grown.map_err(|error| format!("{}: {error}", prepared.id))?;
+                // The field is asked on the way: there is one stage.
+                let geometry_s = began.elapsed().as_secs_f64();
+                let finishing_s = finishing_s(&prepared, || Ok(grown.mesh))?;
+                let stages = StageSeconds { geometry_s, finishing_s, ..StageSeconds::default() };
+                Ok(Timed { stages, counters: Counters::default() })
+            }
             _ => extractor(&prepared)?
                 .time(threads, steps(&prepared, &|of| finished_extraction(&prepared, of))),
         }
@@ -120,17 +130,17 @@ impl Measured for Clock<'_> {
                     peak_bytes: after.peak_bytes,
                 }))
             }
-            Recipe::GridCells => Ok(None),
+            Recipe::GridCells | Recipe::Front(_) => Ok(None),
             _ => extractor(&prepared)?
                 .memory(threads, steps(&prepared, &|of| finished_extraction(&prepared, of))),
         }
     }
 
-    /// Of a program and of the cells of a grid it is not known.
+    /// Of a program, the cells of a grid and a front it is not known.
     fn allocations(&mut self, number: usize) -> Result<Option<AllocationCounts>, String> {
         let prepared = (self.prepare)(number)?;
         match &prepared.recipe {
-            Recipe::Program(_) | Recipe::GridCells => Ok(None),
+            Recipe::Program(_) | Recipe::GridCells | Recipe::Front(_) => Ok(None),
             _ => {
                 extractor(&prepared)?.allocations(steps(&prepared, &|of| finished_extraction(&prepared, of)))
             }

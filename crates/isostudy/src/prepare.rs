@@ -118,7 +118,7 @@ impl<'a> Prepared<'a> {
     pub(crate) fn cells(&self) -> Result<[u32; 3]> {
         Ok(match &self.recipe {
             Recipe::Extractor(method) => method.cells(&self.grid)?,
-            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::GridCells => {
+            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::GridCells | Recipe::Front(_) => {
                 self.grid.lattice(Arrangement::SimpleCubic)?.cells()
             }
         })

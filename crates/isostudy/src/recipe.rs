@@ -1,6 +1,7 @@
 //! What a study's recipes ask for: an extractor of ours, a program, or meshes that are there.
 
 use crate::finishing;
+use crate::front::FrontKeys;
 use crate::study_key::place;
 use anyhow::{Context, Result, bail};
 use isostudy_design::config::{FieldSection, ObjectSection, Quantity};
@@ -22,10 +23,11 @@ pub(crate) enum StudyKind {
     Program,
     Meshes,
     GridCells,
+    AdvancingFront,
 }
 
 impl StudyKind {
-    const ALL: [Self; 3] = [Self::Program, Self::Meshes, Self::GridCells];
+    const ALL: [Self; 4] = [Self::Program, Self::Meshes, Self::GridCells, Self::AdvancingFront];
 
     /// What `kind = ...` calls it.
     fn name(self) -> &'static str {
@@ -33,6 +35,7 @@ impl StudyKind {
             Self::Program => "program",
             Self::Meshes => "meshes",
             Self::GridCells => "grid-cells",
+            Self::AdvancingFront => "advancing-front",
         }
     }
 
@@ -53,6 +56,8 @@ pub(crate) enum Recipe {
     Meshes(BTreeMap<String, PathBuf>),
     /// Marching tetrahedra on the cells of an object that is a grid.
     GridCells,
+    /// Triangles grown over the surface.
+    Front(FrontKeys),
 }
 
 /// Whether this process runs programs in a sandbox. It is asked for once, and every reading of a recipe must say the same.
@@ -178,6 +183,11 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
             }
             Ok(Recipe::GridCells)
         }
+        Some(StudyKind::AdvancingFront) => {
+            let keys: FrontKeys = keys_of(keys)?;
+            keys.check()?;
+            Ok(Recipe::Front(keys))
+        }
         None => {
             let (kind, mut keys) = (recipe.kind.as_str(), keys);
             keys.insert("kind".into(), kind.into());
@@ -244,7 +254,7 @@ pub(crate) fn check(study: &Study) -> Result<()> {
     for method in &study.methods {
         finish(study, method.id)?;
         match recipe(study, method.id, Purpose::Benchmark)? {
-            Recipe::Extractor(_) | Recipe::GridCells => {}
+            Recipe::Extractor(_) | Recipe::GridCells | Recipe::Front(_) => {}
             Recipe::Program(program) => program.check().with_context(|| key(study, method.id))?,
             Recipe::Meshes(files) => {
                 for (object, path) in &files {
@@ -321,7 +331,7 @@ pub(crate) fn inputs(study: &Study, id: MethodId) -> Result<Vec<String>> {
 /// If one cannot be read.
 pub(crate) fn files(study: &Study, id: MethodId) -> Result<Vec<(String, String)>> {
     let files = match recipe(study, id, Purpose::Benchmark)? {
-        Recipe::Extractor(_) | Recipe::GridCells => Vec::new(),
+        Recipe::Extractor(_) | Recipe::GridCells | Recipe::Front(_) => Vec::new(),
         Recipe::Program(program) => program.files().with_context(|| key(study, id))?,
         Recipe::Meshes(files) => files.into_values().collect(),
     };

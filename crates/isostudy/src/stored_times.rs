@@ -14,8 +14,8 @@ use std::path::PathBuf;
 /// Times configurations of one object with the same cubes from the samples at their corners: the whole mesh, then chunks of so many
 /// cells a side, 0 for none, and edits as [`chunk_times`](crate::chunk_times::chunk_times) has them. They work in turn. Each number is
 /// of one extraction on one thread, after one that is not counted. Every method is given the same samples. One that asks for values or
-/// gradients between them has them by trilinear interpolation, which is in its time. Not in the result are meshes out of files, and the
-/// cells of a grid, whose values are stored anyway. `progress` is told how much of how much is done.
+/// gradients between them has them by trilinear interpolation, which is in its time. Not in the result are meshes out of files, fronts,
+/// and the cells of a grid, whose values are stored anyway. `progress` is told how much of how much is done.
 ///
 /// # Errors
 /// If anything cannot be extracted.

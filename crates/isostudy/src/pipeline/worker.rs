@@ -186,7 +186,9 @@ pub(super) fn timed(study: &Study) -> Result<Vec<&Configuration>> {
     for configuration in study.configurations.iter().filter(is_work) {
         match recipe(study, configuration.id.method, Purpose::Benchmark)? {
             Recipe::Meshes(_) => {}
-            Recipe::Extractor(_) | Recipe::Program(_) | Recipe::GridCells => timed.push(configuration),
+            Recipe::Extractor(_) | Recipe::Program(_) | Recipe::GridCells | Recipe::Front(_) => {
+                timed.push(configuration);
+            }
         }
     }
     Ok(timed)

@@ -116,6 +116,9 @@ fn why_not(kind: StudyKind) -> &'static str {
              See `isostudy study`"
         }
         StudyKind::GridCells => "the cells of a grid are extracted on with --grid, without a method",
+        StudyKind::AdvancingFront => {
+            "fronts are methods of a study, which says how long edges are; see `isostudy study`"
+        }
     }
 }
 

@@ -138,6 +138,12 @@ impl Pipeline<'_> {
                     return Ok(Err(refused.to_string()));
                 }
             }
+            // What cannot be grown so coarsely is no fault of the study.
+            Recipe::Front(front) => {
+                if let Err(refused) = front.grow(prepared.field, &prepared.grid, prepared.isovalue) {
+                    return Ok(Err(refused.to_string()));
+                }
+            }
             Recipe::Program(_) => {}
         }
         let mut extractor = Extractor::new().with_progress(step.within(TICKS_A_MESH));
