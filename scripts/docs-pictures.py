@@ -4,7 +4,7 @@
 Usage: scripts/docs-pictures.py [ISOSTUDY [PICTURE...]]
 
 ISOSTUDY is the command, `isostudy` if left out; PICTURE one of six-methods, surfaces, edge-groups, terrain, methods (a folder and a sheet),
-methods-drops, methods-box, labels and scattered, all if left out.
+methods-drops, methods-box, labels, finishing and scattered, all if left out.
 Run it in the project's folder; it needs Pillow. surfaces and labels need `scripts/fetch-samples.sh` first.
 """
 
@@ -86,6 +86,15 @@ RING = [
 HOLE = ((0.5, 0.55, 0.25), 0.3)  # centre, radius
 RING_POSE = {"middle": (0, 0, 0), "turn": 0, "tilt": 0.5, "half": 1.6}
 RING_SEEN = (0.22, 0.29, 0.78, 0.71)
+
+# Of docs/finishing.md: a block with a dome, and the steps for it.
+DOME = [
+    *("--field", "min(max(abs(x)-0.73, abs(y)-0.53, abs(z)-0.33), sqrt(x^2 + y^2 + (z-0.3)^2) - 0.44)"),
+    *("--bounds=-0.9,-0.9,-0.6,0.9,0.9,0.9", "--cells", "24", "--method", "mc"),
+]
+STEPS = ["", "coplanar:tolerance=0.001", "decimate:ratio=0.1", "re-tile:points=800"]
+DOME_POSE = {"middle": (0, 0, 0.1), "turn": 0.5, "tilt": 0.5, "half": 1.2}
+DOME_SEEN = (0.24, 0.27, 0.76, 0.66)
 
 FONT = "assets/fonts/DejaVuSans.ttf"
 RENDERED = 1120  # pixels of the whole picture of an asteroid, of which a crop is shown
@@ -171,6 +180,17 @@ def labels(isostudy, folder):
         mesh, picture = folder / f"{number}.ply", folder / f"{number}.png"
         run(isostudy, "extract", "--labels", source, *more, "-o", mesh, "--picture", picture)
         yield Image.open(picture).convert("RGB"), title, triangles(mesh)
+
+
+def finishing(isostudy, folder):
+    """A block with a dome by marching cubes, and after each step alone."""
+    for step in STEPS:
+        mesh, posed = folder / "finished.ply", folder / "posed.obj"
+        run(isostudy, "extract", *DOME, *(["--finish", step] if step else []), "-o", mesh)
+        pose(mesh, posed, **DOME_POSE)
+        picture = part(turned(isostudy, folder, posed, 1000, "--look", "smooth-wireframe"), DOME_SEEN)
+        name, _, settings = step.partition(":")
+        yield picture, name or "mc", f"{triangles(mesh)}{settings and ', '}{settings}"
 
 
 def scattered(isostudy, folder):
@@ -396,6 +416,7 @@ def main():
             "six-methods": lambda to: save(montage(six_methods(isostudy, folder), 3, (320, 260)), to),
             "surfaces": lambda to: save(montage(surfaces(isostudy, folder), 4, (280, 280)), to),
             "labels": lambda to: save(montage(labels(isostudy, folder), 3, (300, 300)), to),
+            "finishing": lambda to: save(montage(finishing(isostudy, folder), 4, (300, 225)), to),
             "scattered": lambda to: save(montage(scattered(isostudy, folder), 4, (300, 225)), to),
             "edge-groups": lambda to: run(isostudy, "table", *TABLES, "--groups", "--figure", to),
             "terrain": lambda to: save(montage(terrain(isostudy, folder), 4, (250, 188)), to),
