@@ -13,6 +13,9 @@ use crate::sizes::Sizes;
 
 type Point = [u32; 3];
 
+/// The field is asked for the range of its values in squares of so many points a side.
+const BLOCK: usize = 8;
+
 /// Closed curves of points on the border, the surface on the left of each.
 pub(crate) fn loops(
     probe: &Probe<'_>,
@@ -50,6 +53,36 @@ struct Grid {
     cells: Point,
 }
 
+/// A face of the box.
+struct Face {
+    axis: usize,
+    is_far: bool,
+    /// Along its two axes.
+    cells: [u32; 2],
+    /// The number of the far face.
+    at: u32,
+    inside: Vec<bool>,
+}
+
+impl Face {
+    fn index(&self, i: u32, j: u32) -> usize {
+        (i * (self.cells[1] + 1) + j) as usize
+    }
+
+    fn point(&self, i: u32, j: u32) -> Point {
+        let mut p = [0; 3];
+        p[self.axis] = if self.is_far { self.at } else { 0 };
+        (p[(self.axis + 1) % 3], p[(self.axis + 2) % 3]) = (i, j);
+        p
+    }
+
+    /// The corners of a cell, counter-clockwise seen from outside of the box.
+    fn corners(&self, i: u32, j: u32) -> [[u32; 2]; 4] {
+        let [a, b, c, d] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
+        if self.is_far { [a, b, c, d] } else { [a, d, c, b] }
+    }
+}
+
 /// Edges of the grid that cross the surface, and for each the next along its curve.
 struct Crossings {
     edges: Vec<[Point; 2]>,
@@ -80,29 +113,30 @@ impl Grid {
         (0..3).filter(is_shared).count() == 2
     }
 
-    /// The cells of all faces, each with its corners counter-clockwise seen from outside of the box.
-    fn squares(&self) -> impl Iterator<Item = [Point; 4]> + '_ {
-        (0..6).flat_map(move |face| {
-            let (axis, is_far) = (face / 2, face % 2 == 1);
-            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-            let cells = (0..self.cells[u]).flat_map(move |i| (0..self.cells[v]).map(move |j| (i, j)));
-            cells.map(move |(i, j)| {
-                let corner = |di: u32, dj: u32| {
-                    let mut p = [0; 3];
-                    p[axis] = if is_far { self.cells[axis] } else { 0 };
-                    (p[u], p[v]) = (i + di, j + dj);
-                    p
-                };
-                let corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-                if is_far { corners } else { [corners[0], corners[3], corners[2], corners[1]] }
-            })
-        })
+    /// The points of a face, the second of its axes fastest, and for each whether it is inside.
+    fn face(&self, probe: &Probe<'_>, face: usize) -> Face {
+        let (axis, is_far) = (face / 2, face % 2 == 1);
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut of = Face { axis, is_far, cells: [self.cells[u], self.cells[v]], at: self.cells[axis], inside: Vec::new() };
+        of.inside = vec![false; ((of.cells[0] + 1) * (of.cells[1] + 1)) as usize];
+        for i in (0..=of.cells[0]).step_by(BLOCK) {
+            for j in (0..=of.cells[1]).step_by(BLOCK) {
+                let last = [(i + BLOCK as u32 - 1).min(of.cells[0]), (j + BLOCK as u32 - 1).min(of.cells[1])];
+                let corners = [of.point(i, j), of.point(last[0], last[1])].map(|p| self.place(p));
+                let known = probe.side_of_box(corners[0].min(corners[1]), corners[0].max(corners[1]));
+                for (i, j) in (i..=last[0]).flat_map(|i| (j..=last[1]).map(move |j| (i, j))) {
+                    let index = of.index(i, j);
+                    of.inside[index] = known.unwrap_or_else(|| probe.value(self.place(of.point(i, j))) > 0.0);
+                }
+            }
+        }
+        of
     }
 
     fn crossings(&self, probe: &Probe<'_>) -> Crossings {
-        let mut values = BTreeMap::new();
         let mut numbers: BTreeMap<[Point; 2], usize> = BTreeMap::new();
         let mut found = Crossings { edges: Vec::new(), next: Vec::new() };
+<<<<<<< HEAD
         for corners in self.squares() {
             let is_inside =
                 corners.map(|p| *values.entry(p).or_insert_with(|| probe.value(self.place(p)) > 0.0));
@@ -122,12 +156,51 @@ impl Grid {
                 let mut leaves = (i + step) % 4;
                 while !(is_inside[leaves] && !is_inside[(leaves + 1) % 4]) {
                     leaves = (leaves + step) % 4;
+=======
+        for face in (0..6).map(|face| self.face(probe, face)) {
+            for (i, j) in (0..face.cells[0]).flat_map(|i| (0..face.cells[1]).map(move |j| (i, j))) {
+                let corners = face.corners(i, j);
+                let is_inside = corners.map(|[i, j]| face.inside[face.index(i, j)]);
+                if is_inside == [is_inside[0]; 4] {
+                    continue;
+>>>>>>> 5551782c7228e20a2ae2a9e45b2b6c7801410493
                 }
-                pairs.push((number(i), number(leaves)));
+                let corners = corners.map(|[i, j]| face.point(i, j));
+                self.join(probe, corners, is_inside, &mut numbers, &mut found);
             }
-            pairs.into_iter().for_each(|(from, to)| found.next[from] = to);
         }
         found
+    }
+
+    /// What a cell joins.
+    fn join(
+        &self,
+        probe: &Probe<'_>,
+        corners: [Point; 4],
+        is_inside: [bool; 4],
+        numbers: &mut BTreeMap<[Point; 2], usize>,
+        found: &mut Crossings,
+    ) {
+        let mut number = |i: usize| {
+            let (a, b) = (corners[i], corners[(i + 1) % 4]);
+            *numbers.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                found.edges.push([a.min(b), a.max(b)]);
+                found.next.push(usize::MAX);
+                found.edges.len() - 1
+            })
+        };
+        // Edges by which the way round the cell enters the solid, and by which it leaves it.
+        let enters: Vec<usize> = (0..4).filter(|&i| !is_inside[i] && is_inside[(i + 1) % 4]).collect();
+        let step = if enters.len() == 2 && self.is_middle_inside(probe, corners) { 3 } else { 1 };
+        let mut pairs = Vec::new();
+        for i in enters {
+            let mut leaves = (i + step) % 4;
+            while !(is_inside[leaves] && !is_inside[(leaves + 1) % 4]) {
+                leaves = (leaves + step) % 4;
+            }
+            pairs.push((number(i), number(leaves)));
+        }
+        pairs.into_iter().for_each(|(from, to)| found.next[from] = to);
     }
 
     fn is_middle_inside(&self, probe: &Probe<'_>, corners: [Point; 4]) -> bool {

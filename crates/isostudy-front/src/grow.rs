@@ -25,7 +25,7 @@ const MOST_ROUNDS: u32 = 6;
 /// The most triangles per cube of an edge's length.
 const MOST_IN_CELL: f64 = 40.0;
 /// How often all is begun again with a finer border.
-const RESTARTS: u64 = 5;
+const RESTARTS: u64 = 3;
 /// A loop that extends farther, in edges, is repaired piece by piece.
 const MOST_EXTENT: f64 = 4.0;
 /// A triangle is tried if normals of its corners have a smaller cosine.

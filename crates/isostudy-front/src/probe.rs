@@ -3,7 +3,8 @@
 use std::cell::Cell;
 
 use glam::DVec3;
-use isostudy_field::StudyField;
+use isostudy_field::{SAFE, StudyField};
+use isostudy_mesh::Bounds;
 
 /// Newton's steps until the way is given up.
 const STEPS: u32 = 24;
@@ -65,6 +66,19 @@ impl<'a> Probe<'a> {
     pub(crate) fn value(&self, p: DVec3) -> f64 {
         self.values.set(self.values.get() + 1);
         f64::from(self.field.sample(p.as_vec3())) - self.isovalue
+    }
+
+    /// Whether a box is all inside or all outside, where the field knows.
+    pub(crate) fn side_of_box(&self, min: DVec3, max: DVec3) -> Option<bool> {
+        let bounds = Bounds { min: min.as_vec3(), max: max.as_vec3() };
+        let (least, greatest) = self.field.range(bounds, f32::NAN)?;
+        let (least, greatest) = (f64::from(least) - self.isovalue, f64::from(greatest) - self.isovalue);
+        let slack = f64::from(SAFE - 1.0) * (least.abs() + greatest.abs());
+        match () {
+            () if least > slack => Some(true),
+            () if greatest < -slack => Some(false),
+            () => None,
+        }
     }
 
     /// The values of a row minus the isovalue.

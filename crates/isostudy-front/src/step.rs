@@ -136,7 +136,7 @@ impl Step<'_> {
         let mean = patch.normal(a) + patch.normal(b);
         let normal = (mean - along * along.dot(mean)).try_normalize()?;
         let size = self.sizes.at(middle);
-        let radius = 2.5 * size.max(length);
+        let radius = 2.0 * size.max(length);
         let mut vertices = Vec::new();
         patch.near.each(middle, radius, |v| {
             if patch.place(v).distance_squared(middle) < radius * radius

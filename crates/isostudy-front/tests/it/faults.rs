@@ -113,6 +113,6 @@ fn a_rough_field_ends() {
             p.iter().fold(7u32, |bits, v| (bits ^ v.to_bits()).wrapping_mul(0x9e37_79b9).rotate_left(13));
         bits as f32 / u32::MAX as f32 - 0.5
     });
-    let settings = Front { seeds: Seeds::Sampled { cells: 6 }, ..Front::of_edge(0.3) };
+    let settings = Front { seeds: Seeds::Sampled { cells: 4 }, ..Front::of_edge(0.5) };
     let _ = grown(&rough, cube(1.0), &settings);
 }
