@@ -117,7 +117,13 @@ impl Grid {
     fn face(&self, probe: &Probe<'_>, face: usize) -> Face {
         let (axis, is_far) = (face / 2, face % 2 == 1);
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let mut of = Face { axis, is_far, cells: [self.cells[u], self.cells[v]], at: self.cells[axis], inside: Vec::new() };
+        let mut of = Face {
+            axis,
+            is_far,
+            cells: [self.cells[u], self.cells[v]],
+            at: self.cells[axis],
+            inside: Vec::new(),
+        };
         of.inside = vec![false; ((of.cells[0] + 1) * (of.cells[1] + 1)) as usize];
         for i in (0..=of.cells[0]).step_by(BLOCK) {
             for j in (0..=of.cells[1]).step_by(BLOCK) {
@@ -136,34 +142,12 @@ impl Grid {
     fn crossings(&self, probe: &Probe<'_>) -> Crossings {
         let mut numbers: BTreeMap<[Point; 2], usize> = BTreeMap::new();
         let mut found = Crossings { edges: Vec::new(), next: Vec::new() };
-<<<<<<< HEAD
-        for corners in self.squares() {
-            let is_inside =
-                corners.map(|p| *values.entry(p).or_insert_with(|| probe.value(self.place(p)) > 0.0));
-            let mut number = |i: usize| {
-                let (a, b) = (corners[i], corners[(i + 1) % 4]);
-                *numbers.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                    found.edges.push([a.min(b), a.max(b)]);
-                    found.next.push(usize::MAX);
-                    found.edges.len() - 1
-                })
-            };
-            // Edges by which the way round the cell enters the solid, and by which it leaves it.
-            let enters: Vec<usize> = (0..4).filter(|&i| !is_inside[i] && is_inside[(i + 1) % 4]).collect();
-            let mut pairs = Vec::new();
-            for &i in &enters {
-                let step = if enters.len() == 2 && self.is_middle_inside(probe, corners) { 3 } else { 1 };
-                let mut leaves = (i + step) % 4;
-                while !(is_inside[leaves] && !is_inside[(leaves + 1) % 4]) {
-                    leaves = (leaves + step) % 4;
-=======
         for face in (0..6).map(|face| self.face(probe, face)) {
             for (i, j) in (0..face.cells[0]).flat_map(|i| (0..face.cells[1]).map(move |j| (i, j))) {
                 let corners = face.corners(i, j);
                 let is_inside = corners.map(|[i, j]| face.inside[face.index(i, j)]);
                 if is_inside == [is_inside[0]; 4] {
                     continue;
->>>>>>> 5551782c7228e20a2ae2a9e45b2b6c7801410493
                 }
                 let corners = corners.map(|[i, j]| face.point(i, j));
                 self.join(probe, corners, is_inside, &mut numbers, &mut found);
