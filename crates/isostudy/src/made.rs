@@ -10,6 +10,7 @@ use isostudy_design::record::{Counts, MadeBy};
 use isostudy_extract::{Execution, Extractor};
 use isostudy_field::{Counted, FieldCache};
 use isostudy_finish::Extent;
+use isostudy_front::FrontError;
 use isostudy_mesh::TriangleMesh;
 use isostudy_program::{Program, ProgramError, Ready, Request, Samples, Worker};
 use rayon::prelude::*;
@@ -191,7 +192,10 @@ fn with_normals(mut mesh: TriangleMesh) -> TriangleMesh {
     mesh
 }
 
-/// What is wrong with a program, if that is why something failed: the others then go on.
-pub(crate) fn program_error(error: &anyhow::Error) -> Option<&ProgramError> {
-    error.chain().find_map(|cause| cause.downcast_ref::<ProgramError>())
+/// What a program or a front could not do, if that is why something failed: the other methods then go on.
+pub(crate) fn own_failure(error: &anyhow::Error) -> Option<String> {
+    error.chain().find_map(|cause| {
+        let of_program = cause.downcast_ref::<ProgramError>().map(ToString::to_string);
+        of_program.or_else(|| cause.downcast_ref::<FrontError>().map(ToString::to_string))
+    })
 }

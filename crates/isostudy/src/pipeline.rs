@@ -64,7 +64,7 @@ pub(crate) struct Pipeline<'a> {
     /// What was found for methods with a budget.
     spacings: RwLock<Spacings>,
     accuracies: Mutex<Accuracies>,
-    /// Configurations whose program failed, and why.
+    /// Configurations whose program or front failed, and why.
     failed: RwLock<BTreeMap<ConfigurationId, String>>,
 }
 
@@ -136,12 +136,12 @@ impl<'a> Pipeline<'a> {
         read(&self.failed).contains_key(id)
     }
 
-    /// Keeps why a configuration failed, and says it, if its program is to blame.
+    /// Keeps why a configuration failed, and says it, if its program or its front is to blame.
     ///
     /// # Errors
     /// Anything else that went wrong.
     fn fail(&self, id: &ConfigurationId, error: anyhow::Error) -> Result<()> {
-        if made::program_error(&error).is_none() {
+        if made::own_failure(&error).is_none() {
             return Err(error);
         }
         self.leave_out(id, format!("{error:#}"));

@@ -68,7 +68,7 @@ pub(super) fn short(evidence: &Evidence<'_>) -> String {
     let mut parts = Vec::new();
     if !evidence.left_out.is_empty() {
         let named = list(&evidence.left_out);
-        parts.push(format!("The programs of {named} failed, so that nothing is said about them."));
+        parts.push(format!("Nothing is said about {named}, which failed."));
     }
     if evidence.shown.is_empty() {
         parts.push("Nothing is said about preference.".to_owned());

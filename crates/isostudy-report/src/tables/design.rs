@@ -74,7 +74,7 @@ pub(super) fn left_out(inputs: &Inputs<'_>) -> Option<Table> {
         .column("id", "Id", |(id, _)| Cell::text(id))
         .column("reason", "Reason", |(_, why)| Cell::text(in_one_line(why)))
         .into_table("left_out", "Left out")
-        .with_note("The programs of these configurations failed, so that nothing here is about them.")
+        .with_note("These configurations failed, so that nothing here is about them.")
         .unless_empty()
 }
 

@@ -1,7 +1,7 @@
 //! Every configuration's mesh at each resolution of the viewer, as compact glTF with its errors.
 
 use crate::input;
-use crate::made::{Made, program_error};
+use crate::made::{Made, own_failure};
 use crate::pipeline::meshes::TICKS_A_MESH;
 use crate::pipeline::{Meshes, Pipeline};
 use crate::prepare::{Prepared, Wanted};
@@ -138,13 +138,7 @@ impl Pipeline<'_> {
                     return Ok(Err(refused.to_string()));
                 }
             }
-            // What cannot be grown so coarsely is no fault of the study.
-            Recipe::Front(front) => {
-                if let Err(refused) = front.grow(prepared.field, &prepared.grid, prepared.isovalue) {
-                    return Ok(Err(refused.to_string()));
-                }
-            }
-            Recipe::Program(_) => {}
+            Recipe::Program(_) | Recipe::Front(_) => {}
         }
         let mut extractor = Extractor::new().with_progress(step.within(TICKS_A_MESH));
         match prepared.make_any(&mut extractor, &Execution { threads: self.threads }) {
@@ -153,8 +147,8 @@ impl Pipeline<'_> {
                 None => "there is no surface".into(),
             })),
             Ok(made) => Ok(Ok(made)),
-            Err(error) => match program_error(&error) {
-                Some(failed) => Ok(Err(failed.to_string())),
+            Err(error) => match own_failure(&error) {
+                Some(failed) => Ok(Err(failed)),
                 None => Err(error.context(configuration.id.to_string())),
             },
         }
