@@ -253,12 +253,8 @@ fn the_page_has_the_keys_and_names_of_every_kind_of_method() {
     let on_the_page = sections().into_iter().filter(|section| section.table == "methods.recipe");
     let on_the_page: BTreeSet<String> = on_the_page.filter_map(|section| section.kind).collect();
     // The last four are the study's own.
-    let all = kinds().iter().map(|kind| kind.name).chain([
-        "program",
-        "meshes",
-        "grid-cells",
-        "advancing-front",
-    ]);
+    let all =
+        kinds().iter().map(|kind| kind.name).chain(["program", "meshes", "grid-cells", "advancing-front"]);
     assert_eq!(on_the_page, all.map(str::to_owned).collect());
     for kind in kinds() {
         has_the_keys_and_names_of(kind.name);

@@ -17,7 +17,12 @@ type Point = [u32; 3];
 const BLOCK: usize = 8;
 
 /// Closed curves of points on the border, the surface on the left of each.
-pub(crate) fn loops(probe: &Probe<'_>, bounds: Bounds, sizes: &Sizes, step: f64) -> Result<Vec<Vec<Foot>>, Miss> {
+pub(crate) fn loops(
+    probe: &Probe<'_>,
+    bounds: Bounds,
+    sizes: &Sizes,
+    step: f64,
+) -> Result<Vec<Vec<Foot>>, Miss> {
     let grid = Grid::of(bounds, step);
     let crossings = grid.crossings(probe);
     let mut feet = Vec::new();
@@ -94,13 +99,17 @@ impl Grid {
     fn place(&self, p: Point) -> DVec3 {
         let along = |axis: usize| match p[axis] {
             n if n == self.cells[axis] => self.max[axis],
-            n => self.min[axis] + (self.max[axis] - self.min[axis]) * f64::from(n) / f64::from(self.cells[axis]),
+            n => {
+                self.min[axis]
+                    + (self.max[axis] - self.min[axis]) * f64::from(n) / f64::from(self.cells[axis])
+            }
         };
         rounded(DVec3::new(along(0), along(1), along(2)))
     }
 
     fn is_on_edge(&self, [a, b]: [Point; 2]) -> bool {
-        let is_shared = |axis: &usize| a[*axis] == b[*axis] && (a[*axis] == 0 || a[*axis] == self.cells[*axis]);
+        let is_shared =
+            |axis: &usize| a[*axis] == b[*axis] && (a[*axis] == 0 || a[*axis] == self.cells[*axis]);
         (0..3).filter(is_shared).count() == 2
     }
 
@@ -108,7 +117,13 @@ impl Grid {
     fn face(&self, probe: &Probe<'_>, face: usize) -> Face {
         let (axis, is_far) = (face / 2, face % 2 == 1);
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let mut of = Face { axis, is_far, cells: [self.cells[u], self.cells[v]], at: self.cells[axis], inside: Vec::new() };
+        let mut of = Face {
+            axis,
+            is_far,
+            cells: [self.cells[u], self.cells[v]],
+            at: self.cells[axis],
+            inside: Vec::new(),
+        };
         of.inside = vec![false; ((of.cells[0] + 1) * (of.cells[1] + 1)) as usize];
         for i in (0..=of.cells[0]).step_by(BLOCK) {
             for j in (0..=of.cells[1]).step_by(BLOCK) {
@@ -254,7 +269,8 @@ fn in_face(probe: &Probe<'_>, bounds: Bounds, p: DVec3, reach: f64) -> Result<Fo
     let gap = |axis: usize| (p[axis] - min[axis]).abs().min((max[axis] - p[axis]).abs());
     let axis = (0..3).min_by(|&a, &b| gap(a).total_cmp(&gap(b))).unwrap_or(0);
     let mut start = p;
-    start[axis] = if (p[axis] - min[axis]).abs() < (max[axis] - p[axis]).abs() { min[axis] } else { max[axis] };
+    start[axis] =
+        if (p[axis] - min[axis]).abs() < (max[axis] - p[axis]).abs() { min[axis] } else { max[axis] };
     let within = |mut g: DVec3| {
         g[axis] = 0.0;
         g

@@ -82,7 +82,20 @@ pub fn grow(
     let most_triangles = settings.most_triangles.min(most as usize);
     let patch = Patch::new(bounds, settings.edge);
     let counts = Counts::default();
-    let mut grower = Grower { probe: &probe, samples, settings, bounds, sizes, least, most_triangles, patch, tried: 0, border: 0, waiting: Waiting::default(), counts };
+    let mut grower = Grower {
+        probe: &probe,
+        samples,
+        settings,
+        bounds,
+        sizes,
+        least,
+        most_triangles,
+        patch,
+        tried: 0,
+        border: 0,
+        waiting: Waiting::default(),
+        counts,
+    };
     while !grower.attempt()? {
         grower.counts.restarts += 1;
         grower.patch = Patch::new(bounds, settings.edge);
@@ -125,9 +138,11 @@ struct Stuck {
 impl Grower<'_> {
     /// Grows all. Whether it is done; if not, the border must be finer.
     fn attempt(&mut self) -> Result<bool, FrontError> {
-        let step = self.sizes.at(0.5 * (self.bounds.min + self.bounds.max).as_dvec3()).max(self.settings.edge);
+        let step =
+            self.sizes.at(0.5 * (self.bounds.min + self.bounds.max).as_dvec3()).max(self.settings.edge);
         let step = BORDER_STEP * step * 0.5_f64.powi(self.counts.restarts as i32);
-        let loops = border::loops(self.probe, self.bounds, &self.sizes, step).map_err(|miss| self.missed(miss))?;
+        let loops =
+            border::loops(self.probe, self.bounds, &self.sizes, step).map_err(|miss| self.missed(miss))?;
         self.counts.border_loops = loops.len() as u64;
         for curve in loops {
             let vertices: Vec<u32> = curve.into_iter().map(|foot| self.patch.add_vertex(foot)).collect();
@@ -166,7 +181,10 @@ impl Grower<'_> {
         let foot = match self.probe.project(place, reach) {
             Ok(foot) => foot,
             Err(Miss::Far) => {
-                return Err(FrontError::Seed { place, reason: "Newton's method reaches no surface from there" });
+                return Err(FrontError::Seed {
+                    place,
+                    reason: "Newton's method reaches no surface from there",
+                });
             }
             Err(miss) => return Err(self.missed(miss)),
         };
@@ -446,7 +464,11 @@ impl Front {
         let wrong = |name, value, allowed: String| Err(FrontError::Setting { name, value, allowed });
         let longest = f64::from(bounds.size().max_element());
         if !(self.edge > 0.0 && self.edge <= longest) {
-            return wrong("edge", self.edge, format!("above 0 and at most {longest}, the longest side of the box"));
+            return wrong(
+                "edge",
+                self.edge,
+                format!("above 0 and at most {longest}, the longest side of the box"),
+            );
         }
         let finest = longest * 1e-5;
         if self.edge < finest {
@@ -454,7 +476,11 @@ impl Front {
         }
         if let Sizing::Curvature { smallest, angle } = self.sizing {
             if !(smallest >= finest && smallest <= self.edge) {
-                return wrong("smallest", smallest, format!("at least {finest} and at most the edge, {}", self.edge));
+                return wrong(
+                    "smallest",
+                    smallest,
+                    format!("at least {finest} and at most the edge, {}", self.edge),
+                );
             }
             if !(angle > 0.0 && angle <= 1.0) {
                 return wrong("angle", angle, "above 0 and at most 1 radian".into());

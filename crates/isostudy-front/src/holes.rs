@@ -62,7 +62,11 @@ fn ears(patch: &Patch, corners: &[u32], forced: bool) -> Option<Vec<[u32; 3]>> {
             let (from, to) = (corners[p], corners[q]);
             is_inner(p, q) && (patch.is_used(from, to) || patch.is_used(to, from))
         };
-        if is_taken(i, k) || is_taken(k, j) || is_taken(j, i) || !(forced || faces(ear.map(|v| patch.foot(v)), -0.3)) {
+        if is_taken(i, k)
+            || is_taken(k, j)
+            || is_taken(j, i)
+            || !(forced || faces(ear.map(|v| patch.foot(v)), -0.3))
+        {
             return f64::INFINITY;
         }
         DVec3::length((b - a).cross(c - a))

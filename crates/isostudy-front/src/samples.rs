@@ -29,10 +29,12 @@ impl Samples {
         let (min, size) = (bounds.min.as_dvec3(), bounds.size().as_dvec3());
         let cells = (size / size.max_element() * f64::from(cells)).ceil().max(DVec3::ONE);
         let counts = cells.to_array().map(|n| n as usize + 1);
-        let mut samples = Self { min, spacing: size / cells, counts, values: vec![0.0; counts.iter().product()] };
+        let mut samples =
+            Self { min, spacing: size / cells, counts, values: vec![0.0; counts.iter().product()] };
         let x: Vec<f32> = (0..counts[0]).map(|i| samples.point([i, 0, 0]).x as f32).collect();
         for (row, values) in samples.values.chunks_exact_mut(counts[0]).enumerate() {
-            let at = min + samples.spacing * DVec3::new(0.0, (row % counts[1]) as f64, (row / counts[1]) as f64);
+            let at =
+                min + samples.spacing * DVec3::new(0.0, (row % counts[1]) as f64, (row / counts[1]) as f64);
             probe.row(&x, at.y as f32, at.z as f32, values);
         }
         samples

@@ -78,7 +78,8 @@ impl Guide {
                 }
             }
         }
-        let guide = Self { min: bounds.min.as_dvec3(), spacing: samples.spacing, counts: samples.counts, lengths };
+        let guide =
+            Self { min: bounds.min.as_dvec3(), spacing: samples.spacing, counts: samples.counts, lengths };
         guide.spread(waiting)
     }
 

@@ -139,7 +139,9 @@ impl Step<'_> {
         let radius = 2.0 * size.max(length);
         let mut vertices = Vec::new();
         patch.near.each(middle, radius, |v| {
-            if patch.place(v).distance_squared(middle) < radius * radius && patch.normal(v).dot(normal) > CREASED.normals {
+            if patch.place(v).distance_squared(middle) < radius * radius
+                && patch.normal(v).dot(normal) > CREASED.normals
+            {
                 vertices.push(v);
             }
         });
@@ -218,7 +220,8 @@ impl Step<'_> {
             foot.normal.dot(normal) > CREASED.normals && rise < CREASED.rise * to.length() + 0.02 * size
         };
         let (is_a_or_b, clear) = (|v: u32| v == round.a || v == round.b, CLEAR_OF_VERTICES * size);
-        let is_near = |&v: &u32| !is_a_or_b(v) && self.patch.place(v).distance_squared(p) < clear * clear && is_same(v);
+        let is_near =
+            |&v: &u32| !is_a_or_b(v) && self.patch.place(v).distance_squared(p) < clear * clear && is_same(v);
         if round.vertices.iter().any(is_near) {
             return false;
         }
@@ -287,7 +290,8 @@ impl Step<'_> {
                 return true;
             }
             let edge = ends.map(flat);
-            let is_inside = !is_corner(u) && holds(corners, edge[0]) && is_beside(patch.foot(u), corner, patch, round);
+            let is_inside =
+                !is_corner(u) && holds(corners, edge[0]) && is_beside(patch.foot(u), corner, patch, round);
             let crosses = sides.iter().any(|&(end, q)| {
                 let shares = [u, w].iter().any(|&x| x == end || Some(x) == v);
                 !shares && cross(flat(q), corners[2], edge[0], edge[1])

@@ -2,12 +2,10 @@
 //!
 //! `cargo test --release --locked -p isostudy-front --test prices -- --ignored --nocapture` prints it, in a minute or two.
 
-use isostudy_extract::{
-    BoxGrid, Execution, Extractor, IsosurfacePoints, Method, accuracy_beside, presets,
-};
+use isostudy_extract::{BoxGrid, Execution, Extractor, IsosurfacePoints, Method, accuracy_beside, presets};
 use isostudy_field::{
-    Asteroid, Counted, FieldCache, Gyroid, Plain, Sphere, StudyField, Terrain, TerrainCharacter, TerrainSettings,
-    from_fn,
+    Asteroid, Counted, FieldCache, Gyroid, Plain, Sphere, StudyField, Terrain, TerrainCharacter,
+    TerrainSettings, from_fn,
 };
 use isostudy_front::{Front, Sizing, grow};
 use isostudy_mesh::glam::Vec3;
@@ -68,7 +66,12 @@ impl Object<'_> {
         spacing
     }
 
-    fn row(&self, points: &IsosurfacePoints, label: &str, make: impl Fn(&dyn StudyField) -> TriangleMesh) -> usize {
+    fn row(
+        &self,
+        points: &IsosurfacePoints,
+        label: &str,
+        make: impl Fn(&dyn StudyField) -> TriangleMesh,
+    ) -> usize {
         let mut kept = FieldCache::default();
         let counted = Counted::new(self.field, &mut kept);
         let mesh = make(&counted);

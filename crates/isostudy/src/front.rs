@@ -41,9 +41,11 @@ impl FrontKeys {
     /// # Errors
     /// The first key that is out of its range, with what is allowed.
     pub(crate) fn check(&self) -> Result<()> {
-        for (name, value, most) in
-            [("edge", self.edge, 100.0), ("smallest", self.smallest, self.edge), ("angle_deg", self.angle_deg, 57.0)]
-        {
+        for (name, value, most) in [
+            ("edge", self.edge, 100.0),
+            ("smallest", self.smallest, self.edge),
+            ("angle_deg", self.angle_deg, 57.0),
+        ] {
             // The last two say something only where lengths vary.
             let is_used = name == "edge" || self.sizing == Lengths::Curvature;
             if is_used && !(value > 0.0 && value <= most) {

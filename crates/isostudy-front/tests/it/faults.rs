@@ -78,10 +78,8 @@ fn settings_are_checked() {
     for cells in [0, 513] {
         refused(Front { seeds: Seeds::Sampled { cells }, ..Front::of_edge(0.1) }, "cells");
     }
-    let by_curvature = |smallest, angle| Front {
-        sizing: Sizing::Curvature { smallest, angle },
-        ..Front::of_edge(0.1)
-    };
+    let by_curvature =
+        |smallest, angle| Front { sizing: Sizing::Curvature { smallest, angle }, ..Front::of_edge(0.1) };
     refused(by_curvature(0.2, 0.5), "smallest");
     refused(by_curvature(f64::NAN, 0.5), "smallest");
     refused(by_curvature(0.05, 0.0), "angle");
@@ -94,7 +92,9 @@ fn settings_are_checked() {
     // An edge as long as the box is allowed, and the ball is grown with shorter ones or refused.
     match grow(&ball, cube(1.0), 0.0, &Front::of_edge(2.0)) {
         Ok(made) => assert_eq!(isostudy_mesh::topology::topology(&made.mesh).euler_characteristic, 2),
-        Err(error) => assert!(matches!(error, FrontError::Seed { .. } | FrontError::Unclosed { .. }), "{error}"),
+        Err(error) => {
+            assert!(matches!(error, FrontError::Seed { .. } | FrontError::Unclosed { .. }), "{error}")
+        }
     }
 }
 
@@ -109,7 +109,8 @@ fn growth_ends_at_its_limit() {
 #[test]
 fn a_rough_field_ends() {
     let rough = from_fn(|p: [f32; 3]| {
-        let bits = p.iter().fold(7u32, |bits, v| (bits ^ v.to_bits()).wrapping_mul(0x9e37_79b9).rotate_left(13));
+        let bits =
+            p.iter().fold(7u32, |bits, v| (bits ^ v.to_bits()).wrapping_mul(0x9e37_79b9).rotate_left(13));
         bits as f32 / u32::MAX as f32 - 0.5
     });
     let settings = Front { seeds: Seeds::Sampled { cells: 4 }, ..Front::of_edge(0.5) };

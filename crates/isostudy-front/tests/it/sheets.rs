@@ -21,7 +21,11 @@ fn a_thin_plate_is_right_or_refused() {
                 assert_eq!(report.boundary_edges, 0);
                 right += 1;
             }
-            Err(FrontError::Unclosed { place, .. } | FrontError::Pinched { place } | FrontError::Astray { place }) => {
+            Err(
+                FrontError::Unclosed { place, .. }
+                | FrontError::Pinched { place }
+                | FrontError::Astray { place },
+            ) => {
                 assert!(place.abs().max_element() < 1.0 && thickness < 0.1, "{thickness}: {place}");
             }
             Err(other) => panic!("{thickness}: {other}"),
