@@ -71,7 +71,13 @@ impl<'a> Probe<'a> {
     /// Whether a box is all inside or all outside, where the field knows.
     pub(crate) fn side_of_box(&self, min: DVec3, max: DVec3) -> Option<bool> {
         let bounds = Bounds { min: min.as_vec3(), max: max.as_vec3() };
-        let (least, greatest) = self.field.range(bounds, f32::NAN)?;
+        let mut range = self.field.range(bounds, f32::NAN)?;
+        if range.0.is_nan() || range.1.is_nan() {
+            self.values.set(self.values.get() + 1);
+            let middle = self.field.sample((bounds.min + bounds.max) * 0.5);
+            range = self.field.range(bounds, middle)?;
+        }
+        let (least, greatest) = range;
         let (least, greatest) = (f64::from(least) - self.isovalue, f64::from(greatest) - self.isovalue);
         let slack = f64::from(SAFE - 1.0) * (least.abs() + greatest.abs());
         match () {

@@ -3,7 +3,7 @@
 use crate::shapes::{cube, grown, sound, torus};
 use isostudy_extract::{BoxGrid, Execution, Extractor, presets};
 use isostudy_field::{Gyroid, Sphere, StudyField, Terrain, TerrainCharacter, TerrainSettings};
-use isostudy_front::{Front, grow};
+use isostudy_front::{Front, FrontError, grow};
 use isostudy_mesh::glam::Vec3;
 use isostudy_mesh::topology::topology;
 use isostudy_mesh::{Bounds, quality::quality};
@@ -70,6 +70,34 @@ fn open_ground_is_a_disc() {
             let mesh = grow(&field, bounds, 0.0, &Front::of_edge(edge)).unwrap().mesh;
             let report = sound(&mesh, bounds);
             assert_eq!((report.euler_characteristic, report.boundary_loops), expected, "{seed} {edge}");
+        }
+    }
+}
+
+/// The study's own ground stands on walls, whose edges are sharp. It is right, or refused with a place.
+#[test]
+fn closed_ground_is_right_or_refused() {
+    let bounds = Bounds { min: Vec3::new(-1.0, -1.0, -0.5), max: Vec3::new(1.0, 1.0, 0.5) };
+    // What is refused takes its time; caves take 20 seconds.
+    let cases =
+        [(TerrainCharacter::Hills, 0.1), (TerrainCharacter::Hills, 0.05), (TerrainCharacter::Cliffs, 0.1)];
+    for (character, edge) in cases {
+        // As in configs/terrain.toml.
+        let settings = TerrainSettings { margin: 0.013, ..character.settings(3) };
+        let field = Terrain::try_new(settings, bounds).unwrap();
+        match grow(&field, bounds, 0.0, &Front::of_edge(edge)) {
+            Ok(made) => {
+                let report = sound(&made.mesh, bounds);
+                assert_eq!(report.boundary_edges, 0);
+                assert_eq!(report.euler_characteristic, of_cubes(&field, bounds, 0.02).0, "{edge}");
+            }
+            Err(
+                FrontError::Unclosed { place, .. }
+                | FrontError::Pinched { place }
+                | FrontError::Astray { place }
+                | FrontError::TooMany { place, .. },
+            ) => assert!(place.abs().max_element() <= 1.0, "{place}"),
+            Err(other) => panic!("{other}"),
         }
     }
 }
