@@ -40,9 +40,9 @@ impl LabelVolume<'_> {
         mesh.triangles.iter().flatten().for_each(|&v| numbers[v as usize] = 0);
         // Numbers go up with cells, as they did.
         let mut vertex_cells = Vec::new();
-        for v in 0..numbers.len() {
-            if numbers[v] != NONE {
-                numbers[v] = vertex_cells.len() as u32;
+        for (v, number) in numbers.iter_mut().enumerate() {
+            if *number != NONE {
+                *number = vertex_cells.len() as u32;
                 mesh.positions[vertex_cells.len()] = mesh.positions[v];
                 vertex_cells.push(of_all[v]);
             }

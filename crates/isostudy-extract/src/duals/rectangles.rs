@@ -104,9 +104,9 @@ fn drop_unused(trace: &mut Trace, extraction: &mut Extraction) -> Result<(), Ext
     let mut numbers = filled(mesh.positions.len(), u32::MAX)?;
     mesh.triangles.iter().flatten().for_each(|&v| numbers[v as usize] = 0);
     let mut count = 0;
-    for v in 0..numbers.len() {
-        if numbers[v] == 0 {
-            numbers[v] = count as u32;
+    for (v, number) in numbers.iter_mut().enumerate() {
+        if *number == 0 {
+            *number = count as u32;
             mesh.positions[count] = mesh.positions[v];
             trace.keys[count] = trace.keys[v];
             count += 1;
