@@ -170,7 +170,7 @@ def take(docs):
             f"Many triangles are thin: the mean radius ratio is {ratio('mc')}.",
         ),
         (
-            "meshes that you edit in other tools",
+            "meshes that you edit",
             "`nets-manifold`",
             f"It is a manifold of more regular triangles: the mean radius ratio is {ratio('nets-manifold')}.",
             f"{chunk('nets-manifold')}, and has up to {max(error('nets-manifold')):.1f} times the error.",
@@ -178,14 +178,14 @@ def take(docs):
         (
             "buildings and sharp edges",
             "`dc-in-cell`",
-            f"It has {edge('dc-in-cell'):.3f} cube edges of error at the sharp edges of the building, where `mc` has {edge('mc'):.2f}. `dc` has {edge('dc'):.3f}, with {pairs('bu_dc'):,} intersecting pairs.",
+            f"It has {edge('dc-in-cell'):.3f} cube edges of error at the sharp edges of the building, where `mc` has {edge('mc'):.2f}.",
             f"{chunk('dc-in-cell')}. {pairs('bu_dc-in-cell'):,} pairs of triangles intersect there, {pairs('ca_dc-in-cell'):,} in the caves.",
         ),
         (
-            "sharp edges, and no two triangles that intersect",
+            "the same without intersections",
             "`cms`",
-            f"No pair of its triangles intersects on any object. It has {edge('cms'):.3f} cube edges of error at the sharp edges of the building, and {range_of(error('cms'), 2)} of the error of `mc`.",
-            f"It takes {range_of(ratios('benchmark', 'total_without_normals_s', 'cms'), 1)} times the time of `mc`, has {range_of(ratios('quality', 'triangles', 'cms'), 1)} times the triangles, and no chunks.",
+            f"No two triangles intersect. It has {range_of(error('cms'), 2)} of the error of `mc`, {edge('cms'):.3f} at those edges.",
+            f"It takes {range_of(ratios('benchmark', 'total_without_normals_s', 'cms'), 1)} times the time of `mc`, and has no chunks.",
         ),
         (
             "near-equilateral triangles",
@@ -194,13 +194,13 @@ def take(docs):
             f"{chunk('bi-relaxed')}, and has {more} times the triangles. Up to {most} pairs intersect.",
         ),
         (
-            "few triangles, none of them thin",
+            "few triangles, none thin",
             "`snapmc`",
             f"It has {range_of(fewer, 0)} % fewer than `mc`. No angle is below 12.7 degrees.",
-            f"{chunk('snapmc')}, and has up to {max(error('snapmc')):.2f} times the error. It is no manifold where sheets lie close.",
+            f"{chunk('snapmc')}, and has up to {max(error('snapmc')):.2f} times the error. Close sheets touch.",
         ),
         (
-            "terrain that is coarse far away",
+            "coarse terrain far away",
             "`mc` or `nets`",
             f"Both have [levels of detail]({docs}lod.md) without cracks.",
             "`nets` is no manifold. `mc` has thin triangles.",

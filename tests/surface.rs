@@ -375,7 +375,7 @@ fn what_cannot_be_done_is_said_in_one_line() {
     for (arguments, want) in [
         (
             vec!["-o", "a.ply"],
-            "<STUDY|--field <FORMULA>|--volume <FILE>|--mesh <FILE>|--points <FILE>|--soup <FILE>|--grid <FILE>|--labels <FILE>>",
+            "<STUDY|--field <FORMULA>|--volume <FILE>|--mesh <FILE>|--points <FILE>|--soup <FILE>|--grid <FILE>|--frames <FILE,FILE,...>|--labels <FILE>>",
         ),
         (vec!["--field", "x", "-o", "a.ply"], "--bounds"),
         (ball(&[]), "--out"),

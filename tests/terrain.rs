@@ -460,6 +460,13 @@ fn readmes_prices_follow_from_what_was_published() {
         row("bi-relaxed").contains(&format!("{low:.2} to {high:.2} of the error of `mc`")),
         "{low} {high}"
     );
+    let [low, high] = worse("cms");
+    let edges = value("accuracy", "bu_cms", "sharp_edges_mean");
+    let said = format!("It has {low:.2} to {high:.2} of the error of `mc`, {edges:.3} at those edges.");
+    let [low, high] = ratio("benchmark", "total_without_normals_s", "cms");
+    let price = format!("It takes {low:.1} to {high:.1} times the time of `mc`, and has no chunks.");
+    assert!(row("cms").contains(&said) && row("cms").contains(&price), "{said} {price}");
+    assert!(objects.iter().all(|o| value("topology", &format!("{o}_cms"), "self_intersections") == 0.0));
     let [most, least] = ratio("quality", "triangles", "snapmc").map(|ratio| 100.0 * (1.0 - ratio));
     assert!(row("snapmc").contains(&format!("{least:.0} to {most:.0} % fewer than `mc`")), "{least} {most}");
     let [edges, of_cubes] = ["bu_dc-in-cell", "bu_mc"].map(|id| value("accuracy", id, "sharp_edges_mean"));
