@@ -179,7 +179,7 @@ impl Grid {
         let mut pairs = Vec::new();
         for i in enters {
             let mut leaves = (i + step) % 4;
-            while !(is_inside[leaves] && !is_inside[(leaves + 1) % 4]) {
+            while !is_inside[leaves] || is_inside[(leaves + 1) % 4] {
                 leaves = (leaves + step) % 4;
             }
             pairs.push((number(i), number(leaves)));

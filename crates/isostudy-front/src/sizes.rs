@@ -89,11 +89,11 @@ impl Guide {
             if self.lengths[i].to_bits() != bits {
                 continue;
             }
-            for axis in 0..3 {
-                let at = i / strides[axis] % self.counts[axis];
+            for (axis, stride) in strides.into_iter().enumerate() {
+                let at = i / stride % self.counts[axis];
                 let there = self.lengths[i] + GROWTH * self.spacing[axis];
-                let before = (at > 0).then(|| i - strides[axis]);
-                let after = (at + 1 < self.counts[axis]).then(|| i + strides[axis]);
+                let before = (at > 0).then(|| i - stride);
+                let after = (at + 1 < self.counts[axis]).then(|| i + stride);
                 for j in before.into_iter().chain(after) {
                     if there < self.lengths[j] {
                         self.lengths[j] = there;

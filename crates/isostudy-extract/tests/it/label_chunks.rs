@@ -22,7 +22,7 @@ fn labels(counts: [usize; 3], kinds: u32, seed: u64) -> Vec<u32> {
         let nearest = middles.iter().min_by(|a, b| apart(&a.0).total_cmp(&apart(&b.0)));
         nearest.map_or(0, |(_, label)| *label)
     };
-    if seed % 2 == 0 {
+    if seed.is_multiple_of(2) {
         return (0..total).map(|_| random.random_range(0..kinds)).collect();
     }
     (0..total).map(of).collect()
@@ -65,7 +65,7 @@ fn chunks_weld_to_the_whole() {
         for smoothing in [0, 1, 3] {
             for close in [false, true] {
                 let settings =
-                    LabelSettings { smoothing, close, only: if seed % 3 == 0 { &[] } else { &[1] } };
+                    LabelSettings { smoothing, close, only: if seed.is_multiple_of(3) { &[] } else { &[1] } };
                 let Ok(whole) = volume.extract(&settings, &ONE) else { continue };
                 let border = i32::from(close);
                 let all = CellBox { start: [-border; 3], end: counts.map(|n| n as i32 - 1 + border) };
