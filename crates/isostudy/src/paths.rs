@@ -21,7 +21,7 @@ const MEMORY_LIMIT: u64 = 300 << 20;
 const WRITTEN: [(&str, &str); 5] =
     [("", "out"), ("", "picture"), ("", "figure"), ("new", "folder"), ("serve", "answers")];
 /// What else has to be said for an argument to be taken.
-const BESIDE: [(&str, &str, &[&str]); 21] = [
+const BESIDE: [(&str, &str, &[&str]); 22] = [
     ("analyse", "responses", &["my/study.toml"]),
     ("analyse", "mapping", &["answers.csv"]),
     ("distance", "a", &["ball.obj"]),
@@ -29,6 +29,7 @@ const BESIDE: [(&str, &str, &[&str]); 21] = [
     ("turntable", "study", &["--object", "torus", "--colour", "error", "-o", "x.gif"]),
     ("extract", "volume", &["--isovalue", "0", "-o", "x.ply"]),
     ("extract", "grid", &["--isovalue", "0", "-o", "x.ply"]),
+    ("extract", "frames", &["--isovalue", "0", "--time", "0", "-o", "x.ply"]),
     ("extract", "labels", &["-o", "x.ply"]),
     ("extract", "mesh", &["-o", "x.ply"]),
     ("extract", "points", &["-o", "x.ply"]),

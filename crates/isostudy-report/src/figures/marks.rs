@@ -3,7 +3,7 @@
 use super::canvas::{BLACK, Canvas, Colour, WHITE};
 
 /// Shapes, in the order they are given out.
-const SHAPES: [Shape; 7] = [
+const SHAPES: [Shape; 8] = [
     Shape::Circle,
     Shape::Triangle,
     Shape::Square,
@@ -11,7 +11,10 @@ const SHAPES: [Shape; 7] = [
     Shape::Down,
     Shape::Cross,
     Shape::Hourglass,
+    Shape::Star,
 ];
+/// How many shapes there are.
+pub(super) const SHAPE_COUNT: usize = SHAPES.len();
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Shape {
@@ -22,6 +25,7 @@ enum Shape {
     Down,
     Cross,
     Hourglass,
+    Star,
 }
 
 /// What is inside a shape.
@@ -44,7 +48,7 @@ pub(super) struct Mark {
 }
 
 impl Mark {
-    /// The mark of the n-th of several things; after seven they begin again.
+    /// The mark of the n-th of several things; after eight they begin again.
     pub(super) fn nth(n: usize, filled: bool) -> Self {
         Self::of(n, if filled { Filling::Full } else { Filling::Hollow })
     }
@@ -74,6 +78,12 @@ impl Mark {
                 Shape::Hourglass => {
                     at(&[(-1.0, -1.1), (1.0, -1.1), (0.45, 0.0), (1.0, 1.1), (-1.0, 1.1), (-0.45, 0.0)])
                 }
+                Shape::Star => (0..10)
+                    .map(|i| {
+                        (f64::from(i) * std::f64::consts::TAU / 10.0, if i % 2 == 0 { 1.4 } else { 0.6 })
+                    })
+                    .map(|(t, share)| (x + r * share * t.sin(), y - r * share * t.cos()))
+                    .collect(),
                 Shape::Cross => at(&[
                     (-0.35, -1.1),
                     (0.35, -1.1),

@@ -5,7 +5,7 @@
 //! shape goes with its hue, and tells methods of a family apart that has more of them than there are fillings.
 
 use super::canvas::{BLACK, Canvas, Colour, WHITE};
-use super::marks::{Filling, Mark};
+use super::marks::{Filling, Mark, SHAPE_COUNT};
 use super::palette::{self, DARK_INK, HUES, LIGHT_INK, tint};
 pub(super) use super::palette::{GRID, IDEAL};
 use isostudy_design::{MethodId, Study};
@@ -167,11 +167,11 @@ fn by_family(study: &Study, method: MethodId) -> Option<Look> {
         .collect();
     let mut looks: Vec<Option<Look>> = vec![None; hues.len()];
     // Those with the shape of their hue first, so that no large family takes another's.
-    for shapes in [1, HUES.len()] {
+    for shapes in [1, SHAPE_COUNT] {
         for place in 0..hues.len() {
             let hue = hues[place];
             let mut free = (0..shapes * FILLINGS)
-                .map(|n| Look { shape: (hue + n / FILLINGS) % HUES.len(), ..Look::of(hue, n) });
+                .map(|n| Look { shape: (hue + n / FILLINGS) % SHAPE_COUNT, ..Look::of(hue, n) });
             let is_mark = |look: &Look, of: &Look| (look.shape, look.filling) == (of.shape, of.filling);
             let is_free = |look: &Look| !looks.iter().flatten().any(|of| is_mark(look, of));
             if looks[place].is_none() {
@@ -182,8 +182,8 @@ fn by_family(study: &Study, method: MethodId) -> Option<Look> {
     // More methods than marks: hues tell them apart as far as they go.
     for place in 0..hues.len() {
         let hue = hues[place];
-        let mut all = (0..HUES.len() * FILLINGS)
-            .map(|n| Look { shape: (hue + n / FILLINGS) % HUES.len(), ..Look::of(hue, n) });
+        let mut all = (0..SHAPE_COUNT * FILLINGS)
+            .map(|n| Look { shape: (hue + n / FILLINGS) % SHAPE_COUNT, ..Look::of(hue, n) });
         let is_free = |look: &Look| !looks.iter().flatten().any(|of| of == look);
         if looks[place].is_none() {
             looks[place] = all.find(is_free).or(Some(Look::of(hue, place)));
@@ -192,7 +192,7 @@ fn by_family(study: &Study, method: MethodId) -> Option<Look> {
     looks[study.place(method)]
 }
 
-/// How a method looks: by its levels, else by its family, else by place. No two of up to 28 methods of a study have all in common.
+/// How a method looks: by its levels, else by its family, else by place. No two of up to 32 methods of a study have all in common.
 pub(super) fn look(study: &Study, method: MethodId) -> Look {
     let level = |factor| study.level_of(method, factor).map(|level| level.index);
     let crossed = match study.declared_factors().collect::<Vec<_>>()[..] {
