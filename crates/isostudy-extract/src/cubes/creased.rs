@@ -9,7 +9,7 @@
 //! Faces are decided by signs, not by the tangents as published. A cube that the surface crosses in two sheets keeps the triangles of
 //! marching cubes, and so do both sides of a face that is crossed twice.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, TryReserveError};
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -19,7 +19,7 @@ use crate::clock::Moment;
 use crate::duals::{Sharp, Tangent, tangent};
 use crate::execution::threads::for_each_on_threads;
 use crate::extraction::{ExtractError, Extraction};
-use crate::memory::{collected, filled, push};
+use crate::memory::{collected, filled, push, with_room};
 use crate::sampling::level::Level;
 use crate::source::Request;
 use crate::surface::normals::vertex_normals;
@@ -67,14 +67,17 @@ impl Creases {
         }
         let least_cosine = f64::from(self.crease_deg).to_radians().cos();
         let mut pass = Pass { grid, edges: &edges, tangents: &tangents, least_cosine, faces: HashMap::new() };
+        // A crossing lies in four faces, of which each has two crossings or four.
+        pass.faces.try_reserve(2 * edges.len())?;
+        let mut polygons = Polygons::with_room()?;
         let cells = cells(&trace.cells)?;
         for cell in &cells {
             request.control.check()?;
-            pass.find_faces(&mesh.triangles[cell.clone()]);
+            pass.find_faces(&mesh.triangles[cell.clone()], &mut polygons);
         }
         let mut triangles = Vec::new();
         for cell in cells {
-            pass.write(&mesh.triangles[cell], &mut mesh.positions, &mut triangles)?;
+            pass.write(&mesh.triangles[cell], &mut polygons, &mut mesh.positions, &mut triangles)?;
         }
         if mesh.positions.len() as u64 > u64::from(request.most_vertices) {
             return Err(ExtractError::TooManyVertices { limit: request.most_vertices });
@@ -148,13 +151,13 @@ struct Pass<'a> {
 
 impl Pass<'_> {
     /// Notes the faces that a cell's polygons cross.
-    fn find_faces(&mut self, triangles: &[[u32; 3]]) {
-        let polygons = polygons(triangles);
-        for polygon in &polygons {
+    fn find_faces(&mut self, triangles: &[[u32; 3]], polygons: &mut Polygons) {
+        polygons.find(triangles);
+        for polygon in polygons.all() {
             for (i, &v) in polygon.iter().enumerate() {
                 let u = polygon[(i + 1) % polygon.len()];
                 let between = [v.min(u), v.max(u)];
-                let (face, is_single) = (self.face([v, u]), polygons.len() == 1);
+                let (face, is_single) = (self.face([v, u]), polygons.ends.len() == 1);
                 let new = || Crossed { between, is_free: true, vertex: None };
                 let known = self.faces.entry(face).or_insert_with(new);
                 known.is_free &= is_single && known.between == between;
@@ -178,12 +181,16 @@ impl Pass<'_> {
     fn write(
         &mut self,
         own: &[[u32; 3]],
+        polygons: &mut Polygons,
         positions: &mut Vec<Vec3>,
         triangles: &mut Vec<[u32; 3]>,
     ) -> Result<(), ExtractError> {
-        let polygons = polygons(own);
-        let [polygon] = &polygons[..] else { return extend(triangles, own) };
-        let mut round = Vec::with_capacity(2 * polygon.len());
+        polygons.find(own);
+        let Polygons { vertices: polygon, ends, round, tangents, .. } = polygons;
+        if ends.len() != 1 {
+            return extend(triangles, own);
+        }
+        round.clear();
         for (i, &v) in polygon.iter().enumerate() {
             round.push(v);
             round.extend(self.face_vertex([v, polygon[(i + 1) % polygon.len()]], positions)?);
@@ -191,12 +198,13 @@ impl Pass<'_> {
         if round.len() == polygon.len() && !self.has_crease(polygon) {
             return extend(triangles, own);
         }
-        let tangents: Vec<Tangent> = polygon.iter().map(|&v| self.tangents[v as usize]).collect();
+        tangents.clear();
+        tangents.extend(polygon.iter().map(|&v| self.tangents[v as usize]));
         let (low, high) = self.cell(polygon);
         let margin = MARGIN * (high - low);
         let sharp = Sharp { truncation: TRUNCATION, in_cell: true };
         let centre = positions.len() as u32;
-        push(positions, sharp.vertex(&tangents, low + margin, high - margin).as_vec3())?;
+        push(positions, sharp.vertex(tangents, low + margin, high - margin).as_vec3())?;
         for (i, &v) in round.iter().enumerate() {
             push(triangles, [v, round[(i + 1) % round.len()], centre])?;
         }
@@ -216,8 +224,11 @@ impl Pass<'_> {
     }
 
     fn has_crease(&self, polygon: &[u32]) -> bool {
-        let normals: Vec<DVec3> = polygon.iter().filter_map(|&v| self.tangents[v as usize].1).collect();
-        normals.iter().enumerate().any(|(i, a)| normals[..i].iter().any(|b| a.dot(*b) < self.least_cosine))
+        let normal = |v: u32| self.tangents[v as usize].1;
+        let are_apart = |v: u32, u: u32| {
+            normal(v).zip(normal(u)).is_some_and(|(one, other)| one.dot(other) < self.least_cosine)
+        };
+        (0..polygon.len()).any(|i| polygon[..i].iter().any(|&before| are_apart(before, polygon[i])))
     }
 
     /// The vertex in the face between two crossings, where it has one.
@@ -279,21 +290,54 @@ fn extend(triangles: &mut Vec<[u32; 3]>, own: &[[u32; 3]]) -> Result<(), Extract
     Ok(())
 }
 
-/// The polygons that a cell's triangles are made of, in the direction of theirs.
-fn polygons(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
-    let sides = || triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let mut rest: Vec<[u32; 2]> = sides().filter(|&[a, b]| !sides().any(|side| side == [b, a])).collect();
-    let mut polygons = Vec::new();
-    while let Some([first, mut last]) = rest.pop() {
-        let mut polygon = vec![first];
-        while last != first {
-            polygon.push(last);
-            let Some(next) = rest.iter().position(|side| side[0] == last) else { break };
-            last = rest.swap_remove(next)[1];
-        }
-        polygons.push(polygon);
+/// The polygons that a cell's triangles are made of, in the direction of theirs, and what is worked out for one. Kept from cell to cell,
+/// so that nothing is allocated where memory may be short.
+struct Polygons {
+    /// One after the other.
+    vertices: Vec<u32>,
+    /// Where each ends.
+    ends: Vec<usize>,
+    rest: Vec<[u32; 2]>,
+    round: Vec<u32>,
+    tangents: Vec<Tangent>,
+}
+
+impl Polygons {
+    /// More than any cell has: twelve crossings in up to four polygons, with as many vertices in faces.
+    const ROOM: usize = 64;
+
+    fn with_room() -> Result<Self, TryReserveError> {
+        Ok(Self {
+            vertices: with_room(Self::ROOM)?,
+            ends: with_room(Self::ROOM)?,
+            rest: with_room(Self::ROOM)?,
+            round: with_room(Self::ROOM)?,
+            tangents: with_room(Self::ROOM)?,
+        })
     }
-    polygons
+
+    fn find(&mut self, triangles: &[[u32; 3]]) {
+        let Self { vertices, ends, rest, .. } = self;
+        let sides = || triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        vertices.clear();
+        ends.clear();
+        rest.clear();
+        rest.extend(sides().filter(|&[a, b]| !sides().any(|side| side == [b, a])));
+        while let Some([first, mut last]) = rest.pop() {
+            vertices.push(first);
+            while last != first {
+                vertices.push(last);
+                let Some(next) = rest.iter().position(|side| side[0] == last) else { break };
+                last = rest.swap_remove(next)[1];
+            }
+            ends.push(vertices.len());
+        }
+    }
+
+    fn all(&self) -> impl Iterator<Item = &[u32]> {
+        let start = |i: usize| if i == 0 { 0 } else { self.ends[i - 1] };
+        self.ends.iter().enumerate().map(move |(i, &end)| &self.vertices[start(i)..end])
+    }
 }
 
 #[cfg(test)]
@@ -308,7 +352,9 @@ mod tests {
             polygon
         };
         let of = |triangles: &[[u32; 3]]| {
-            let mut all: Vec<Vec<u32>> = polygons(triangles).into_iter().map(turned).collect();
+            let mut polygons = Polygons::with_room().unwrap();
+            polygons.find(triangles);
+            let mut all: Vec<Vec<u32>> = polygons.all().map(|of| turned(of.to_vec())).collect();
             all.sort();
             all
         };
