@@ -20,6 +20,7 @@ mod http;
 mod isovalues;
 mod labels;
 mod large_volumes;
+mod left_out;
 mod memory;
 mod messages;
 mod named;

@@ -462,9 +462,9 @@ fn readmes_prices_follow_from_what_was_published() {
     );
     let [low, high] = worse("cms");
     let edges = value("accuracy", "bu_cms", "sharp_edges_mean");
-    let said = format!("It has {low:.2} to {high:.2} of the error of `mc`, {edges:.3} at those edges.");
+    let said = format!("It has {low:.2} to {high:.2} of `mc`'s error, {edges:.3} cube edges at sharp edges.");
     let [low, high] = ratio("benchmark", "total_without_normals_s", "cms");
-    let price = format!("It takes {low:.1} to {high:.1} times the time of `mc`, and has no chunks.");
+    let price = format!("It takes {low:.1} to {high:.1} times the time of `mc`, without chunks.");
     assert!(row("cms").contains(&said) && row("cms").contains(&price), "{said} {price}");
     assert!(objects.iter().all(|o| value("topology", &format!("{o}_cms"), "self_intersections") == 0.0));
     let [most, least] = ratio("quality", "triangles", "snapmc").map(|ratio| 100.0 * (1.0 - ratio));

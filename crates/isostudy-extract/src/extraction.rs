@@ -8,6 +8,7 @@ use isostudy_mesh::TriangleMesh;
 
 use crate::lattice::{Arrangement, CellBox, Lattice};
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
+use crate::surface::normals::vertex_normals;
 use crate::surface::triangulation::Triangulation;
 use crate::wording::in_words;
 
@@ -30,6 +31,19 @@ impl Extraction {
         normals.clear();
         triangles.clear();
         (self.counts, self.times) = Default::default();
+    }
+
+    /// Counts the mesh and gives it normals, where its triangles were made anew.
+    ///
+    /// # Errors
+    /// [`ExtractError::NoMemoryForMesh`].
+    pub(crate) fn renew(&mut self) -> Result<(), ExtractError> {
+        let TriangleMesh { positions, normals, triangles } = &mut self.mesh;
+        *normals = vertex_normals(positions, triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
+        let counts = &mut self.counts;
+        (counts.vertices, counts.triangles) = (positions.len() as u64, triangles.len() as u64);
+        (counts.vertex_bytes, counts.index_bytes) = (24 * counts.vertices, 12 * counts.triangles);
+        Ok(())
     }
 }
 

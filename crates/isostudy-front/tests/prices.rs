@@ -99,7 +99,7 @@ impl Object<'_> {
 }
 
 #[test]
-#[ignore = "prints times; takes a minute or two"]
+#[ignore = "prints times for docs/front.md: the command is on top; takes a minute or two"]
 fn what_a_front_gives_for_its_cost() {
     let cube = |half: f32| Bounds { min: Vec3::splat(-half), max: Vec3::splat(half) };
     let ground = Bounds { min: Vec3::new(-1.0, -1.0, -0.5), max: Vec3::new(1.0, 1.0, 0.5) };

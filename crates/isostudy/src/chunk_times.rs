@@ -277,3 +277,30 @@ pub(crate) fn places(of: &isostudy_bench::Prepared<'_>) -> Result<Vec<Vec3>> {
     let places = surface.len().min(EDITS);
     Ok((0..places).map(|edit| surface[edit * surface.len() / places]).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::bail;
+    use std::cell::RefCell;
+
+    /// Each has one turn per round, and each begins as often as the others.
+    #[test]
+    fn works_take_turns_and_another_begins_each_round() {
+        let order = RefCell::new(String::new());
+        let mut works = ['a', 'b', 'c'];
+        in_turn(&mut works, 4, |work| {
+            order.borrow_mut().push(*work);
+            Ok(())
+        })
+        .unwrap();
+        assert_eq!(order.into_inner(), "abcbcacababc");
+        in_turn(&mut [0; 0], 4, |_| bail!("nobody works")).unwrap();
+        let mut turns = 0;
+        let ended = in_turn(&mut works, 4, |_| {
+            turns += 1;
+            if turns == 5 { bail!("tired") } else { Ok(()) }
+        });
+        assert!(ended.is_err() && turns == 5, "the first that fails ends it");
+    }
+}

@@ -183,7 +183,7 @@ impl Prepared<'_> {
 }
 
 /// Whoever draws a mesh needs normals.
-fn with_normals(mut mesh: TriangleMesh) -> TriangleMesh {
+pub(crate) fn with_normals(mut mesh: TriangleMesh) -> TriangleMesh {
     if mesh.normals.len() != mesh.positions.len() {
         mesh.normals = isostudy_mesh::normals::area_weighted_normals(&mesh.positions, &mesh.triangles);
         // A vertex without a triangle, or with such as cancel out, points anywhere.

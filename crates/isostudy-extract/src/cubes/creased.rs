@@ -22,7 +22,6 @@ use crate::extraction::{ExtractError, Extraction};
 use crate::memory::{collected, filled, push, with_room};
 use crate::sampling::level::Level;
 use crate::source::Request;
-use crate::surface::normals::vertex_normals;
 use crate::surface::trace::Trace;
 
 /// How far vertices stay within their face or cube, in its edges.
@@ -83,11 +82,7 @@ impl Creases {
             return Err(ExtractError::TooManyVertices { limit: request.most_vertices });
         }
         mesh.triangles = triangles;
-        mesh.normals =
-            vertex_normals(&mesh.positions, &mesh.triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
-        let counts = &mut extraction.counts;
-        (counts.vertices, counts.triangles) = (mesh.positions.len() as u64, mesh.triangles.len() as u64);
-        (counts.vertex_bytes, counts.index_bytes) = (24 * counts.vertices, 12 * counts.triangles);
+        extraction.renew()?;
         extraction.times.vertex += start.elapsed();
         Ok(())
     }

@@ -20,7 +20,6 @@ use crate::cubes::grid::CubeGrid;
 use crate::extraction::{ExtractError, Extraction};
 use crate::memory::collected;
 use crate::source::Request;
-use crate::surface::normals::vertex_normals;
 use crate::surface::trace::Trace;
 
 /// Merges cells of an extraction with tangent planes, whose trace is given. No vertex of a merged cell is farther than `tolerance` spacings from the
@@ -46,12 +45,8 @@ pub(super) fn simplify(
     let net = Net { level, grid, hermite, merged: &merged, quadrilaterals: collected(quadrilaterals)? };
     let triangles_before = mesh.triangles.len();
     net.unfolded(request, &mesh.positions)?.write(&net, trace, mesh)?;
-    mesh.normals =
-        vertex_normals(&mesh.positions, &mesh.triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
-    let counts = &mut extraction.counts;
-    (counts.vertices, counts.triangles) = (mesh.positions.len() as u64, mesh.triangles.len() as u64);
-    (counts.vertex_bytes, counts.index_bytes) = (24 * counts.vertices, 12 * counts.triangles);
-    counts.discarded_triangles = triangles_before as u64 - counts.triangles;
+    extraction.renew()?;
+    extraction.counts.discarded_triangles = triangles_before as u64 - extraction.counts.triangles;
     extraction.times.vertex += start.elapsed();
     Ok(())
 }

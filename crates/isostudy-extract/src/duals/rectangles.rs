@@ -8,7 +8,6 @@ use super::quads::Quadrilateral;
 use crate::clock::Moment;
 use crate::extraction::{ExtractError, Extraction};
 use crate::memory::{collected, filled};
-use crate::surface::normals::vertex_normals;
 use crate::surface::trace::Trace;
 
 /// One of a net whose vertices are in the middle of their cells.
@@ -42,13 +41,8 @@ pub(super) fn merge(trace: &mut Trace, extraction: &mut Extraction) -> Result<()
         }
     }
     drop_unused(trace, extraction)?;
-    let mesh = &mut extraction.mesh;
-    mesh.normals =
-        vertex_normals(&mesh.positions, &mesh.triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
-    let counts = &mut extraction.counts;
-    (counts.vertices, counts.triangles) = (mesh.positions.len() as u64, mesh.triangles.len() as u64);
-    (counts.vertex_bytes, counts.index_bytes) = (24 * counts.vertices, 12 * counts.triangles);
-    counts.discarded_triangles = triangles_before as u64 - counts.triangles;
+    extraction.renew()?;
+    extraction.counts.discarded_triangles = triangles_before as u64 - extraction.counts.triangles;
     extraction.times.geometry += start.elapsed();
     Ok(())
 }

@@ -5,7 +5,7 @@ use isostudy_extract::{
     BoxGrid, CubicalMarchingSquares, DualContouring, Execution, Extractor, Method, MethodError, Source,
     presets,
 };
-use isostudy_field::{Gyroid, Sphere, StudyField};
+use isostudy_field::{Beyond, Gyroid, Sphere, StudyField, VolumeField};
 use isostudy_mesh::self_intersections;
 use isostudy_mesh::topology::topology;
 use isostudy_mesh::{Bounds, TriangleMesh};
@@ -66,6 +66,15 @@ impl StudyField for Balls {
     fn sample(&self, p: Vec3) -> f32 {
         self.0.iter().map(|(middle, radius)| radius - p.distance(*middle)).fold(f32::NEG_INFINITY, f32::max)
     }
+}
+
+/// White noise on nine samples a side, closed off, and its trilinear interpolant.
+fn noise(seed: u64) -> VolumeField {
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    let at_box = |i: usize| [i % 9, i / 9 % 9, i / 81].iter().any(|&at| at == 0 || at == 8);
+    let values = (0..729).map(|i| if at_box(i) { -1.0 } else { random.random::<f32>() - 0.5 }).collect();
+    let steps = [[0.25, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]];
+    VolumeField::try_new([9; 3], values, [-1.0; 3], steps, Beyond::Continued).unwrap()
 }
 
 fn grid(cells: u32) -> BoxGrid {
@@ -145,6 +154,10 @@ fn no_triangle_passes_through_another() {
     }
     for seed in 0..20 {
         check(&Balls::of(seed), 14 + seed as u32, true);
+    }
+    // White noise has every pattern of cubes, with sheets that cross a cube together.
+    for seed in 0..20 {
+        check(&noise(seed), 9 + seed as u32, true);
     }
     check(&Sphere { radius: 0.8 }, 20, true);
     check(&Gyroid::default(), 24, false);

@@ -83,7 +83,7 @@ fn blobs_have_the_topology_of_marching_cubes() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "minutes: run by make test-long"]
 fn many_blobs_have_the_topology_of_marching_cubes() {
     let [right, finer, refused] = compare(100..1100);
     println!("{right} right, {finer} with shorter edges, {refused} refused");

@@ -3,6 +3,7 @@
 use super::super::source_arguments::finite;
 use super::{Arguments, format, open_edges, tell_made, write};
 use crate::input;
+use crate::made::with_normals;
 use crate::memory::{Limit, OfVolume, amount};
 use crate::outcome::Outcome;
 use crate::source::Inside;
@@ -10,8 +11,6 @@ use crate::store::write_whole_by;
 use crate::terminal::say;
 use anyhow::{Context, Result, bail};
 use isostudy_four::{FourError, Placement, Series};
-use isostudy_mesh::TriangleMesh;
-use isostudy_mesh::normals::area_weighted_normals;
 use isostudy_volume::{Frame, NO_LIMIT, Volume};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -179,13 +178,6 @@ fn fits(limit: Limit, held: u64, bytes: u64) -> Result<()> {
         bail!("{} of memory are needed; {}", amount(needed, f64::ceil), limit.allowed());
     }
     Ok(())
-}
-
-fn with_normals(mut mesh: TriangleMesh) -> TriangleMesh {
-    mesh.normals = area_weighted_normals(&mesh.positions, &mesh.triangles);
-    // A vertex whose triangles have no area points anywhere.
-    mesh.normals.iter_mut().filter(|normal| !normal.is_finite()).for_each(|normal| *normal = glam::Vec3::Z);
-    mesh
 }
 
 fn check_vtk(out: &Path) -> Result<()> {
