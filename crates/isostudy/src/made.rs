@@ -1,5 +1,6 @@
 //! A configuration's mesh, however it comes to be.
 
+use crate::families::CannotMake;
 use crate::prepare::Prepared;
 use crate::recipe::Recipe;
 use crate::terminal::tell_once;
@@ -10,7 +11,6 @@ use isostudy_design::record::{Counts, MadeBy};
 use isostudy_extract::{Execution, Extractor};
 use isostudy_field::{Counted, FieldCache};
 use isostudy_finish::Extent;
-use isostudy_front::FrontError;
 use isostudy_mesh::TriangleMesh;
 use isostudy_program::{Program, ProgramError, Ready, Request, Samples, Worker};
 use rayon::prelude::*;
@@ -51,7 +51,7 @@ impl Prepared<'_> {
     pub(crate) fn missed(&self) -> Option<String> {
         match &self.recipe {
             Recipe::Extractor(method) => seeds::missed(method),
-            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::GridCells | Recipe::Front(_) => None,
+            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::Family(_) => None,
         }
     }
 
@@ -119,16 +119,15 @@ impl Prepared<'_> {
                 let mesh = with_normals(mesh);
                 Made { counts: records::counts_of_mesh(&mesh, None), mesh, program: None }
             }
-            Recipe::GridCells => {
-                let mesh = self.on_own_cells()?.mesh;
-                mesh_file::check_lies_in(&mesh, &self.grid)?;
-                Made { counts: records::counts_of_mesh(&mesh, None), mesh, program: None }
-            }
-            Recipe::Front(front) => {
+            Recipe::Family(family) => {
                 let mut kept = FieldCache::default();
                 let field = Counted::new(self.field, &mut kept);
-                let mesh = front.grow(&field, &self.grid, self.isovalue)?.mesh;
-                let counts = records::with_calls(records::counts_of_mesh(&mesh, None), &field);
+                let mesh = family.mesh(&self.asked(&field))?;
+                mesh_file::check_lies_in(&mesh, &self.grid)?;
+                let mut counts = records::counts_of_mesh(&mesh, None);
+                if family.asks_the_field() {
+                    counts = records::with_calls(counts, &field);
+                }
                 Made { counts, mesh, program: None }
             }
         })
@@ -192,10 +191,10 @@ pub(crate) fn with_normals(mut mesh: TriangleMesh) -> TriangleMesh {
     mesh
 }
 
-/// What a program or a front could not do, if that is why something failed: the other methods then go on.
+/// What a program or a family could not do, if that is why something failed: the other methods then go on.
 pub(crate) fn own_failure(error: &anyhow::Error) -> Option<String> {
     error.chain().find_map(|cause| {
         let of_program = cause.downcast_ref::<ProgramError>().map(ToString::to_string);
-        of_program.or_else(|| cause.downcast_ref::<FrontError>().map(ToString::to_string))
+        of_program.or_else(|| cause.downcast_ref::<CannotMake>().map(ToString::to_string))
     })
 }

@@ -91,23 +91,13 @@ impl Measured for Clock<'_> {
                 let counters = Counters { outside_s: Some(answer.wall.as_secs_f64()), ..Counters::default() };
                 Ok(Timed { stages, counters })
             }
-            Recipe::GridCells => {
+            Recipe::Family(family) => {
                 let began = Instant::now();
-                let surface =
-                    prepared.on_own_cells().map_err(|error| format!("{}: {error:#}", prepared.id))?;
+                let mesh = family.mesh(&prepared.asked(prepared.field));
+                let mesh = mesh.map_err(|error| format!("{}: {error:#}", prepared.id))?;
+                // The field is asked on the way, if at all: there is one stage.
                 let geometry_s = began.elapsed().as_secs_f64();
-                let finishing_s = finishing_s(&prepared, || Ok(surface.mesh))?;
-                // Nothing is sampled: the values are the grid's.
-                let stages = StageSeconds { geometry_s, finishing_s, ..StageSeconds::default() };
-                Ok(Timed { stages, counters: Counters::default() })
-            }
-            Recipe::Front(front) => {
-                let began = Instant::now();
-                let grown = front.grow(prepared.field, &prepared.grid, prepared.isovalue);
-                let grown = grown.map_err(|error| format!("{}: {error}", prepared.id))?;
-                // The field is asked on the way: there is one stage.
-                let geometry_s = began.elapsed().as_secs_f64();
-                let finishing_s = finishing_s(&prepared, || Ok(grown.mesh))?;
+                let finishing_s = finishing_s(&prepared, || Ok(mesh))?;
                 let stages = StageSeconds { geometry_s, finishing_s, ..StageSeconds::default() };
                 Ok(Timed { stages, counters: Counters::default() })
             }
@@ -130,17 +120,17 @@ impl Measured for Clock<'_> {
                     peak_bytes: after.peak_bytes,
                 }))
             }
-            Recipe::GridCells | Recipe::Front(_) => Ok(None),
+            Recipe::Family(_) => Ok(None),
             _ => extractor(&prepared)?
                 .memory(threads, steps(&prepared, &|of| finished_extraction(&prepared, of))),
         }
     }
 
-    /// Of a program, the cells of a grid and a front it is not known.
+    /// Of a program and of a family it is not known.
     fn allocations(&mut self, number: usize) -> Result<Option<AllocationCounts>, String> {
         let prepared = (self.prepare)(number)?;
         match &prepared.recipe {
-            Recipe::Program(_) | Recipe::GridCells | Recipe::Front(_) => Ok(None),
+            Recipe::Program(_) | Recipe::Family(_) => Ok(None),
             _ => {
                 extractor(&prepared)?.allocations(steps(&prepared, &|of| finished_extraction(&prepared, of)))
             }

@@ -1,5 +1,6 @@
 //! From a study's words to the extractor's: methods, grids, isovalues. The one place where `design` meets `extract`.
 
+use crate::families::Asked;
 use crate::fields::{self, Fields};
 use crate::memory::Limit;
 use crate::place::place;
@@ -12,7 +13,7 @@ use isostudy_design::{Configuration, ConfigurationId, MethodId, Study};
 use isostudy_extract::{Arrangement, BoxGrid, Execution, Method, MethodError};
 use isostudy_field::StudyField;
 use isostudy_finish::Step;
-use isostudy_grid::{Grid, Surface};
+use isostudy_grid::Grid;
 use isostudy_mesh::Bounds;
 use serde::{Deserialize, Serialize};
 
@@ -102,13 +103,9 @@ impl<'a> Prepared<'a> {
         Some(isostudy_bench::Prepared { field: self.field, method, grid: self.grid, isovalue: self.isovalue })
     }
 
-    /// The surface on the object's own cells.
-    ///
-    /// # Errors
-    /// If it is no grid.
-    pub(crate) fn on_own_cells(&self) -> Result<Surface> {
-        let cells = self.own_cells.context("checked when the study was read")?;
-        Ok(cells.extract(f64::from(self.isovalue)))
+    /// What a family is asked, by a field that may count its calls.
+    pub(crate) fn asked<'f>(&'f self, field: &'f dyn StudyField) -> Asked<'f> {
+        Asked { field, grid: self.grid, isovalue: self.isovalue, own_cells: self.own_cells }
     }
 
     /// Cells of the grid along x, y and z: those of the method, or as many as fill the box.
@@ -118,7 +115,7 @@ impl<'a> Prepared<'a> {
     pub(crate) fn cells(&self) -> Result<[u32; 3]> {
         Ok(match &self.recipe {
             Recipe::Extractor(method) => method.cells(&self.grid)?,
-            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::GridCells | Recipe::Front(_) => {
+            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::Family(_) => {
                 self.grid.lattice(Arrangement::SimpleCubic)?.cells()
             }
         })

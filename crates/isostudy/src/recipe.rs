@@ -1,10 +1,10 @@
 //! What a study's recipes ask for: an extractor of ours, a program, or meshes that are there.
 
+use crate::families::{FAMILIES, Family, FamilyKind, keys_of};
 use crate::finishing;
-use crate::front::FrontKeys;
 use crate::study_key::place;
 use anyhow::{Context, Result, bail};
-use isostudy_design::config::{FieldSection, ObjectSection, Quantity};
+use isostudy_design::config::Quantity;
 use isostudy_design::record::Purpose;
 use isostudy_design::wording::{did_you_mean, plainly};
 use isostudy_design::{MethodId, Study};
@@ -14,34 +14,35 @@ use isostudy_program::Program;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// The kinds of recipes that are the study's own, and never the extractor's: a game's library must not be able to start processes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) enum StudyKind {
     Program,
     Meshes,
-    GridCells,
-    AdvancingFront,
+    Family(FamilyKind),
 }
 
 impl StudyKind {
-    const ALL: [Self; 4] = [Self::Program, Self::Meshes, Self::GridCells, Self::AdvancingFront];
+    fn all() -> impl Iterator<Item = Self> {
+        [Self::Program, Self::Meshes].into_iter().chain(FAMILIES.into_iter().map(Self::Family))
+    }
 
     /// What `kind = ...` calls it.
     fn name(self) -> &'static str {
         match self {
             Self::Program => "program",
             Self::Meshes => "meshes",
-            Self::GridCells => "grid-cells",
-            Self::AdvancingFront => "advancing-front",
+            Self::Family(of) => of.name,
         }
     }
 
     /// The kind of a name; `None` for the extractor's kinds, and for what is none.
     pub(crate) fn of(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
+        Self::all().find(|kind| kind.name() == name)
     }
 }
 
@@ -54,10 +55,8 @@ pub(crate) enum Recipe {
     Program(Program),
     /// Meshes that are there: an object's id, and its file.
     Meshes(BTreeMap<String, PathBuf>),
-    /// Marching tetrahedra on the cells of an object that is a grid.
-    GridCells,
-    /// Triangles grown over the surface.
-    Front(FrontKeys),
+    /// A family with a crate of its own.
+    Family(Arc<dyn Family>),
 }
 
 /// Whether this process runs programs in a sandbox. It is asked for once, and every reading of a recipe must say the same.
@@ -86,11 +85,6 @@ struct ProgramKeys {
     #[serde(default = "four")]
     memory_gib: f64,
 }
-
-/// The keys of the cells of a grid: none.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CellKeys {}
 
 /// The keys of meshes that are there.
 #[derive(Debug, Deserialize)]
@@ -172,22 +166,7 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
             }
             Ok(Recipe::Meshes(keys.files.into_iter().map(|(id, file)| (id, study.resolve(&file))).collect()))
         }
-        Some(StudyKind::GridCells) => {
-            let CellKeys {} = keys_of(keys)?;
-            let is_grid = |object: &&ObjectSection| matches!(object.field, FieldSection::Grid { .. });
-            if let Some(other) = study.file.objects.iter().find(|object| !is_grid(object)) {
-                bail!(
-                    "kind = \"grid-cells\": object {} has no cells of its own; each object must be a field of kind = \"grid\"",
-                    other.id
-                );
-            }
-            Ok(Recipe::GridCells)
-        }
-        Some(StudyKind::AdvancingFront) => {
-            let keys: FrontKeys = keys_of(keys)?;
-            keys.check()?;
-            Ok(Recipe::Front(keys))
-        }
+        Some(StudyKind::Family(of)) => Ok(Recipe::Family((of.read)(keys, study)?)),
         None => {
             let (kind, mut keys) = (recipe.kind.as_str(), keys);
             keys.insert("kind".into(), kind.into());
@@ -210,11 +189,6 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
     }
 }
 
-fn keys_of<T: serde::de::DeserializeOwned>(keys: toml::Table) -> Result<T> {
-    let keys = toml::Value::Table(keys).try_into();
-    keys.map_err(|error: toml::de::Error| anyhow::Error::msg(plainly(error.to_string().trim_end())))
-}
-
 /// A recipe without the keys that have their defaults.
 fn shortest(method: Method) -> String {
     let Ok(toml::Value::Table(mut keys)) = toml::Value::try_from(method) else { return String::new() };
@@ -233,9 +207,8 @@ fn shortest(method: Method) -> String {
 /// What is wrong with a kind that no recipe has: the kinds that there are, with those of a study, and the one that was meant. The
 /// name of a method is no kind, and has a recipe.
 pub(crate) fn no_kind(kind: &str, in_study: bool) -> String {
-    let own = StudyKind::ALL.map(StudyKind::name);
-    let own: &[&str] = if in_study { &own } else { &[] };
-    let known: Vec<&str> = kinds().iter().map(|kind| kind.name).chain(own.iter().copied()).collect();
+    let own = StudyKind::all().filter(|_| in_study).map(StudyKind::name);
+    let known: Vec<&str> = kinds().iter().map(|kind| kind.name).chain(own).collect();
     let allowed = known.iter().map(|kind| format!("\"{kind}\"")).collect::<Vec<_>>().join(", ");
     let named = presets().iter().find(|preset| preset.id == kind.to_lowercase());
     let meant = match named {
@@ -254,7 +227,7 @@ pub(crate) fn check(study: &Study) -> Result<()> {
     for method in &study.methods {
         finish(study, method.id)?;
         match recipe(study, method.id, Purpose::Benchmark)? {
-            Recipe::Extractor(_) | Recipe::GridCells | Recipe::Front(_) => {}
+            Recipe::Extractor(_) | Recipe::Family(_) => {}
             Recipe::Program(program) => program.check().with_context(|| key(study, method.id))?,
             Recipe::Meshes(files) => {
                 for (object, path) in &files {
@@ -283,15 +256,15 @@ pub(crate) fn check(study: &Study) -> Result<()> {
 /// Checks that a method with a budget has a spacing to choose, and that the method to be matched has what is to be matched.
 fn check_budget(study: &Study, method: &isostudy_design::Method) -> Result<()> {
     let Some(budget) = method.budget else { return Ok(()) };
-    let is_of_cells =
-        |id| Ok::<bool, anyhow::Error>(matches!(recipe(study, id, Purpose::Benchmark)?, Recipe::GridCells));
     let is_there =
         |id| Ok::<bool, anyhow::Error>(matches!(recipe(study, id, Purpose::Benchmark)?, Recipe::Meshes(_)));
     let i = study.place(method.id);
     let [name, what] = budget.quantity.names();
     let key = format!("{} = {}", place(study, &format!("methods[{i}].match.{name}")), budget.of);
-    if is_of_cells(method.id)? {
-        bail!("{key}: the cells of a grid have no spacing to choose");
+    if let Recipe::Family(of) = recipe(study, method.id, Purpose::Benchmark)?
+        && let Some(what) = of.has_one_resolution()
+    {
+        bail!("{key}: {what} have no spacing to choose");
     }
     if is_there(method.id)? {
         bail!("{key}: meshes that are there have no spacing to choose");
@@ -331,7 +304,7 @@ pub(crate) fn inputs(study: &Study, id: MethodId) -> Result<Vec<String>> {
 /// If one cannot be read.
 pub(crate) fn files(study: &Study, id: MethodId) -> Result<Vec<(String, String)>> {
     let files = match recipe(study, id, Purpose::Benchmark)? {
-        Recipe::Extractor(_) | Recipe::GridCells | Recipe::Front(_) => Vec::new(),
+        Recipe::Extractor(_) | Recipe::Family(_) => Vec::new(),
         Recipe::Program(program) => program.files().with_context(|| key(study, id))?,
         Recipe::Meshes(files) => files.into_values().collect(),
     };

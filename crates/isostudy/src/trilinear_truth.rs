@@ -15,7 +15,7 @@ pub(crate) fn trilinear_truth(prepared: &Prepared<'_>, cells: [u32; 3]) -> Optio
             (counts, values)
         }
         Recipe::Program(_) => (cells.map(|n| n as usize + 1), prepared.samples(cells)),
-        Recipe::Meshes(_) | Recipe::GridCells | Recipe::Front(_) => return None,
+        Recipe::Meshes(_) | Recipe::Family(_) => return None,
     };
     let samples = Samples::try_new(counts, &values).ok()?;
     let surface = topology(&samples, prepared.isovalue, Ties::Outside).ok()?;

@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         let grid = prepare::grid(object, object.benchmark_spacing);
         let [x, y, z] = match recipe::recipe(&study, configuration.id.method, Purpose::Benchmark)? {
             Recipe::Extractor(method) => method.cells(&grid)?,
-            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::GridCells | Recipe::Front(_) => {
+            Recipe::Program(_) | Recipe::Meshes(_) | Recipe::Family(_) => {
                 grid.lattice(Arrangement::SimpleCubic)?.cells()
             }
         };

@@ -186,7 +186,7 @@ pub(super) fn timed(study: &Study) -> Result<Vec<&Configuration>> {
     for configuration in study.configurations.iter().filter(is_work) {
         match recipe(study, configuration.id.method, Purpose::Benchmark)? {
             Recipe::Meshes(_) => {}
-            Recipe::Extractor(_) | Recipe::Program(_) | Recipe::GridCells | Recipe::Front(_) => {
+            Recipe::Extractor(_) | Recipe::Program(_) | Recipe::Family(_) => {
                 timed.push(configuration);
             }
         }
@@ -204,10 +204,9 @@ pub(super) fn is_program(study: &Study, configuration: &Configuration) -> bool {
 pub(super) fn swept<'s>(study: &'s Study, section: &SweepSection) -> Result<Vec<&'s Configuration>> {
     let mut swept = Vec::new();
     for configuration in timed(study)? {
-        // The cells of a grid have one resolution.
-        let is_of_cells =
-            matches!(recipe(study, configuration.id.method, Purpose::Indexed)?, Recipe::GridCells);
-        if section.objects.contains(&configuration.id.object) && !is_of_cells {
+        let recipe = recipe(study, configuration.id.method, Purpose::Indexed)?;
+        let is_fixed = matches!(recipe, Recipe::Family(of) if of.has_one_resolution().is_some());
+        if section.objects.contains(&configuration.id.object) && !is_fixed {
             swept.push(configuration);
         }
     }

@@ -115,10 +115,7 @@ fn why_not(kind: StudyKind) -> &'static str {
             "finished meshes belong to the objects of a study; what is extracted here is none of them. \
              See `isostudy study`"
         }
-        StudyKind::GridCells => "the cells of a grid are extracted on with --grid, without a method",
-        StudyKind::AdvancingFront => {
-            "fronts are methods of a study, which says how long edges are; see `isostudy study`"
-        }
+        StudyKind::Family(of) => of.why_in_studies,
     }
 }
 

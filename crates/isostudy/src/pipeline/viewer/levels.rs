@@ -132,13 +132,17 @@ impl Pipeline<'_> {
     ) -> Result<Result<Made, String>> {
         match &prepared.recipe {
             Recipe::Meshes(_) => return Ok(Err("its meshes are files of one resolution".into())),
-            Recipe::GridCells => return Ok(Err("its grid has cells of one resolution".into())),
             Recipe::Extractor(method) => {
                 if let Err(refused) = method.check(&prepared.grid) {
                     return Ok(Err(refused.to_string()));
                 }
             }
-            Recipe::Program(_) | Recipe::Front(_) => {}
+            Recipe::Family(of) => {
+                if let Some(what) = of.has_one_resolution() {
+                    return Ok(Err(format!("{what} have one resolution")));
+                }
+            }
+            Recipe::Program(_) => {}
         }
         let mut extractor = Extractor::new().with_progress(step.within(TICKS_A_MESH));
         match prepared.make_any(&mut extractor, &Execution { threads: self.threads }) {

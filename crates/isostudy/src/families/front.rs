@@ -1,16 +1,24 @@
 //! An advancing front as a study's method: its keys, and what grows of them.
 
+use super::{Asked, CannotMake, Family, FamilyKind, keys_of};
 use anyhow::{Result, bail};
 use glam::Vec3;
-use isostudy_extract::BoxGrid;
-use isostudy_field::StudyField;
-use isostudy_front::{Front, FrontError, Grown, Seeds, Sizing, grow};
+use isostudy_design::Study;
+use isostudy_front::{Front, Seeds, Sizing, grow};
+use isostudy_mesh::TriangleMesh;
 use serde::Deserialize;
+use std::sync::Arc;
+
+pub(super) const KIND: FamilyKind = FamilyKind {
+    name: "advancing-front",
+    read,
+    why_in_studies: "fronts are methods of a study, which says how long edges are; see `isostudy study`",
+};
 
 /// The keys of `kind = "advancing-front"`. Lengths are in spacings of the study, so that budgets hold.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub(crate) struct FrontKeys {
+struct FrontKeys {
     /// The length of an edge; with `sizing = "curvature"` the greatest.
     edge: f64,
     sizing: Lengths,
@@ -40,7 +48,7 @@ impl FrontKeys {
     ///
     /// # Errors
     /// The first key that is out of its range, with what is allowed.
-    pub(crate) fn check(&self) -> Result<()> {
+    fn check(&self) -> Result<()> {
         for (name, value, most) in [
             ("edge", self.edge, 100.0),
             ("smallest", self.smallest, self.edge),
@@ -54,18 +62,17 @@ impl FrontKeys {
         }
         Ok(())
     }
+}
 
-    /// The front over an object's box.
-    ///
-    /// # Errors
-    /// [`FrontError`], with the place.
-    pub(crate) fn grow(
-        &self,
-        field: &dyn StudyField,
-        grid: &BoxGrid,
-        isovalue: f32,
-    ) -> Result<Grown, FrontError> {
-        let spacing = f64::from(grid.spacing);
+fn read(keys: toml::Table, _: &Study) -> Result<Arc<dyn Family>> {
+    let of: FrontKeys = keys_of(keys)?;
+    of.check()?;
+    Ok(Arc::new(of))
+}
+
+impl Family for FrontKeys {
+    fn mesh(&self, of: &Asked<'_>) -> Result<TriangleMesh> {
+        let spacing = f64::from(of.grid.spacing);
         let mut settings = Front::of_edge(self.edge * spacing);
         if self.sizing == Lengths::Curvature {
             let (smallest, angle) = (self.smallest * spacing, self.angle_deg.to_radians());
@@ -74,6 +81,7 @@ impl FrontKeys {
         if !self.seeds.is_empty() {
             settings.seeds = Seeds::Points(self.seeds.iter().copied().map(Vec3::from_array).collect());
         }
-        grow(field, grid.bounds, isovalue, &settings)
+        let grown = grow(of.field, of.grid.bounds, of.isovalue, &settings);
+        Ok(grown.map_err(|error| CannotMake(error.to_string()))?.mesh)
     }
 }
