@@ -48,6 +48,11 @@ impl Quadric {
         (p.dot(self.times(p)) + 2.0 * self.b.dot(p) + self.c).max(0.0)
     }
 
+    /// The area of the planes.
+    pub(crate) fn area(&self) -> f64 {
+        self.area
+    }
+
     /// The root of the mean square distance from a point to the planes, over their area.
     pub(crate) fn distance_at(&self, p: DVec3) -> f64 {
         if self.area > 0.0 { (self.at(p) / self.area).sqrt() } else { 0.0 }
