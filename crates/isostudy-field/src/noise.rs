@@ -59,21 +59,17 @@ const GRADIENTS: [[f64; 3]; 12] = [
 ///
 /// Source: K. Perlin, Improving noise, SIGGRAPH 2002 (gradients and `s`); the hash is another.
 pub fn noise(p: DVec3, seed: u32) -> f64 {
-    match Cell::of(p, seed) {
-        Some(cell) => SCALE * cell.value(),
-        None => beyond(p),
-    }
+    let Some(place) = Place::of(p, seed) else { return beyond(p) };
+    let gradient = |corner: usize| &GRADIENTS[place.gradient(corner)];
+    let [x, y, z] = place.t;
+    SCALE * if z == 0.0 { flat_value(gradient, [x, y]) } else { full_value(gradient, [x, y, z]) }
 }
 
 /// [`noise`] and its gradient.
 pub fn noise_and_gradient(p: DVec3, seed: u32) -> (f64, DVec3) {
-    match Cell::of(p, seed) {
-        Some(cell) => {
-            let (value, gradient) = cell.value_and_gradient();
-            (SCALE * value, SCALE * gradient)
-        }
-        None => (beyond(p), DVec3::splat(beyond(p))),
-    }
+    let Some(place) = Place::of(p, seed) else { return (beyond(p), DVec3::splat(beyond(p))) };
+    let (value, gradient) = Cell::round(&place).value_and_gradient(place.t);
+    (SCALE * value, SCALE * gradient)
 }
 
 /// A range that holds every [`noise`] in the box from `low` to `high`, which are finite.
@@ -129,11 +125,12 @@ fn beyond(p: DVec3) -> f64 {
 pub(crate) fn noise_row([x, y, z]: [&[f64]; 3], seed: u32, values: &mut [f64]) {
     let mut first = 0;
     while first < values.len() {
-        let Some(mut cell) = Cell::of(DVec3::new(x[first], y[first], z[first]), seed) else {
+        let Some(place) = Place::of(DVec3::new(x[first], y[first], z[first]), seed) else {
             values[first] = beyond(DVec3::new(x[first], y[first], z[first]));
             first += 1;
             continue;
         };
+        let cell = Cell::round(&place);
         let [low_x, low_y, low_z] = cell.lowest;
         let is_flat = z[first] == low_z;
         let is_within = |i: usize| {
@@ -141,25 +138,31 @@ pub(crate) fn noise_row([x, y, z]: [&[f64]; 3], seed: u32, values: &mut [f64]) {
             along(x[i], low_x) && along(y[i], low_y) && along(z[i], low_z) && (z[i] == low_z) == is_flat
         };
         let end = (first + 1..values.len()).find(|&i| !is_within(i)).unwrap_or(values.len());
-        for i in first..end {
-            cell.t = [x[i] - low_x, y[i] - low_y, z[i] - low_z];
-            values[i] = SCALE * if is_flat { cell.flat_value() } else { cell.full_value() };
+        let gradient = |corner: usize| &cell.gradients[corner];
+        let run = first..end;
+        let places = x[run.clone()].iter().zip(&y[run.clone()]).zip(&z[run.clone()]);
+        if is_flat {
+            for (value, ((x, y), _)) in values[run].iter_mut().zip(places) {
+                *value = SCALE * flat_value(gradient, [x - low_x, y - low_y]);
+            }
+        } else {
+            for (value, ((x, y), z)) in values[run].iter_mut().zip(places) {
+                *value = SCALE * full_value(gradient, [x - low_x, y - low_y, z - low_z]);
+            }
         }
         first = end;
     }
 }
 
-/// The unit cell round a point.
-struct Cell {
-    /// Its lowest corner.
+/// A point in its unit cell.
+struct Place {
     lowest: [f64; 3],
-    /// The point, from there.
     t: [f64; 3],
-    /// Of the corners: x fastest, then y, then z.
-    gradients: [[f64; 3]; 8],
+    /// Of the lowest corner, in the order of the steps.
+    first: u64,
 }
 
-impl Cell {
+impl Place {
     #[inline]
     fn of(p: DVec3, seed: u32) -> Option<Self> {
         if !(p.x.abs() < WHOLE && p.y.abs() < WHOLE && p.z.abs() < WHOLE) {
@@ -174,63 +177,45 @@ impl Cell {
             t[axis] = v - lowest[axis];
             first = first.wrapping_add(STEPS[axis].wrapping_mul(whole as u64));
         }
-        // Corners that count for nothing are left at zero.
-        let corners = if t[2] == 0.0 { 4 } else { 8 };
+        Some(Self { lowest, t, first })
+    }
+
+    /// Which gradient a corner has.
+    #[inline]
+    fn gradient(&self, corner: usize) -> usize {
+        let step = |axis: usize| if corner >> axis & 1 == 1 { STEPS[axis] } else { 0 };
+        hash(self.first.wrapping_add(step(0)).wrapping_add(step(1)).wrapping_add(step(2)))
+    }
+}
+
+/// A unit cell.
+struct Cell {
+    lowest: [f64; 3],
+    /// Of the corners: x fastest, then y, then z.
+    gradients: [[f64; 3]; 8],
+}
+
+impl Cell {
+    /// The cell of a point. Corners that count for nothing there are left at zero.
+    #[inline]
+    fn round(place: &Place) -> Self {
+        let corners = if place.t[2] == 0.0 { 4 } else { 8 };
         let mut gradients = [[0.0; 3]; 8];
         for (corner, gradient) in gradients[..corners].iter_mut().enumerate() {
-            let mut place = first;
-            for (axis, step) in STEPS.into_iter().enumerate() {
-                place = place.wrapping_add(if corner >> axis & 1 == 1 { step } else { 0 });
-            }
-            *gradient = GRADIENTS[hash(place)];
+            *gradient = GRADIENTS[place.gradient(corner)];
         }
-        Some(Self { lowest, t, gradients })
-    }
-
-    /// What a corner's gradient says at the point.
-    #[inline]
-    fn slant(&self, corner: usize) -> f64 {
-        let [gx, gy, gz] = self.gradients[corner];
-        let step = |axis: usize| if corner >> axis & 1 == 1 { self.t[axis] - 1.0 } else { self.t[axis] };
-        gx * step(0) + gy * step(1) + gz * step(2)
-    }
-
-    #[inline]
-    fn value(&self) -> f64 {
-        if self.t[2] == 0.0 { self.flat_value() } else { self.full_value() }
-    }
-
-    /// The value on the lower face, where the upper layer has weight zero.
-    #[inline]
-    fn flat_value(&self) -> f64 {
-        let [x, y, _] = self.t.map(fade);
-        self.layer(0, x, y) + 0.0
-    }
-
-    #[inline]
-    fn full_value(&self) -> f64 {
-        let [x, y, z] = self.t.map(fade);
-        let upper = (self.layer(4, x, y) - self.layer(0, x, y)) * z;
-        self.layer(0, x, y) + upper
-    }
-
-    /// The four corners from this one, blended along x and y.
-    #[inline]
-    fn layer(&self, corner: usize, x: f64, y: f64) -> f64 {
-        let front = blend(self.slant(corner), self.slant(corner + 1), x);
-        let back = blend(self.slant(corner + 2), self.slant(corner + 3), x);
-        blend(front, back, y)
+        Self { lowest: place.lowest, gradients }
     }
 
     /// On the lower face, the upper corners count for nothing.
-    fn value_and_gradient(&self) -> (f64, DVec3) {
-        let weights = self.t.map(fade);
-        let slopes = self.t.map(fade_slope);
-        let corners = if self.t[2] == 0.0 { 4 } else { 8 };
+    fn value_and_gradient(&self, t: [f64; 3]) -> (f64, DVec3) {
+        let weights = t.map(fade);
+        let slopes = t.map(fade_slope);
+        let corners = if t[2] == 0.0 { 4 } else { 8 };
         let mut slants = [0.0; 8];
         let mut gradient = DVec3::ZERO;
-        for (corner, slant) in slants[..corners].iter_mut().enumerate() {
-            *slant = self.slant(corner);
+        for (corner, found) in slants[..corners].iter_mut().enumerate() {
+            *found = slant(self.gradients[corner], corner, t);
             let weight = |axis: usize| {
                 if corner >> axis & 1 == 1 { weights[axis] } else { 1.0 - weights[axis] }
             };
@@ -238,7 +223,7 @@ impl Cell {
             for axis in 0..3 {
                 let others = weight((axis + 1) % 3) * weight((axis + 2) % 3);
                 let change = if corner >> axis & 1 == 1 { others } else { -others };
-                gradient[axis] += self.gradients[corner][axis] * all + *slant * change * slopes[axis];
+                gradient[axis] += self.gradients[corner][axis] * all + *found * change * slopes[axis];
             }
         }
         let layer = |first: usize| {
@@ -257,6 +242,40 @@ fn hash(place: u64) -> usize {
     let mixed = (place ^ place >> 32).wrapping_mul(GOLDEN);
     let mixed = (mixed ^ mixed >> 29).wrapping_mul(STEPS[0]);
     (((mixed >> 32) * GRADIENTS.len() as u64) >> 32) as usize
+}
+
+/// The value in a cell whose corners have these gradients.
+#[inline]
+fn full_value<'g>(gradient: impl Fn(usize) -> &'g [f64; 3], t: [f64; 3]) -> f64 {
+    let weights = t.map(fade);
+    let slant = |corner: usize| slant(*gradient(corner), corner, t);
+    let layer = |first: usize| {
+        let front = blend(slant(first), slant(first + 1), weights[0]);
+        let back = blend(slant(first + 2), slant(first + 3), weights[0]);
+        blend(front, back, weights[1])
+    };
+    let lower = layer(0);
+    lower + (layer(4) - lower) * weights[2]
+}
+
+/// The same on the lower face, where the upper layer has weight zero, and the gradients' last components are times zero.
+#[inline]
+fn flat_value<'g>(gradient: impl Fn(usize) -> &'g [f64; 3], [x, y]: [f64; 2]) -> f64 {
+    let slant = |corner: usize, x: f64, y: f64| {
+        let [gx, gy, _] = *gradient(corner);
+        gx * x + gy * y
+    };
+    let [u, v] = [x, y].map(fade);
+    let front = blend(slant(0, x, y), slant(1, x - 1.0, y), u);
+    let back = blend(slant(2, x, y - 1.0), slant(3, x - 1.0, y - 1.0), u);
+    blend(front, back, v) + 0.0
+}
+
+/// What a corner's gradient says at a point of its cell.
+#[inline]
+fn slant([gx, gy, gz]: [f64; 3], corner: usize, t: [f64; 3]) -> f64 {
+    let step = |axis: usize| if corner >> axis & 1 == 1 { t[axis] - 1.0 } else { t[axis] };
+    gx * step(0) + gy * step(1) + gz * step(2)
 }
 
 #[inline]
