@@ -18,6 +18,7 @@ mod gate;
 mod grids;
 mod http;
 mod isovalues;
+mod jobs;
 mod labels;
 mod large_volumes;
 mod left_out;

@@ -10,6 +10,8 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
             ("new", "isostudy new my-study"),
             ("validate", "isostudy validate configs/paper.toml"),
             ("study", "isostudy study configs/quick.toml"),
+            ("plan", "isostudy plan configs/quick.toml"),
+            ("job", "isostudy job configs/quick.toml mesh/benchmark/ss_bi"),
             ("methods", "isostudy methods"),
             ("extract", "isostudy extract --volume head.nrrd --isovalue 300.5 -o head.glb"),
             ("turntable", "isostudy turntable cache/bunny.ply -o bunny.gif"),

@@ -103,6 +103,10 @@ enum Command {
     Convert(commands::convert::Arguments),
     /// Write tables, figures and index.html again from the results that are there
     Report(commands::report::Arguments),
+    /// List the jobs of a study for a scheduler, with what each needs and is expected to take
+    Plan(commands::plan::Arguments),
+    /// Do jobs of a study, beside others on the same folder
+    Job(commands::job::Arguments),
     /// Check a study file and everything it names, without doing any work
     Validate(commands::validate::Arguments),
     /// Extract one configuration and print what there is to know of it
@@ -138,6 +142,8 @@ fn run(command: &Command) -> Result<Outcome> {
     match command {
         Command::New(arguments) => commands::new::run(arguments),
         Command::Study(arguments) => commands::study::run(arguments),
+        Command::Plan(arguments) => commands::plan::run(arguments),
+        Command::Job(arguments) => commands::job::run(arguments),
         Command::Extract(arguments) => commands::extract::run(arguments),
         Command::Methods(arguments) => commands::methods::run(arguments),
         Command::Table(arguments) => commands::table::run(arguments),

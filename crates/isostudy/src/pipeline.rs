@@ -16,6 +16,7 @@ mod accuracies;
 mod budgets;
 mod bundle;
 mod formats;
+mod jobs;
 mod measurements;
 mod meshes;
 mod pages;
@@ -32,6 +33,7 @@ mod worker;
 pub(crate) use ab::AbChoice;
 use accuracies::Accuracies;
 pub(crate) use bundle::forms_digest;
+pub(crate) use jobs::{Planned, summary};
 pub(crate) use meshes::Meshes;
 pub(crate) use stimuli::MadeWith;
 pub(crate) use tables::{Said, write_answers_only, write_without_study};
@@ -39,11 +41,13 @@ pub(crate) use timings::{Choice, PlanLength};
 pub(crate) use web::Videos;
 pub(crate) use worker::{Invocation, measure};
 
+use crate::families::CannotMake;
 use crate::fields::Fields;
+use crate::input;
 use crate::made;
 use crate::prepare::{Prepared, Spacings, Wanted, prepare};
 use crate::store::{Inputs, Stamp, Store, Writer};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use isostudy_design::record::Purpose;
 use isostudy_design::{Configuration, ConfigurationId, Study};
 use measurements::Times;
@@ -53,14 +57,23 @@ use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard};
 /// Stages that only commands of their own make; a whole study leaves them in place.
 const ASKED_FOR: [&str; 5] = ["bench/", "bundle", "contact_sheet", "video/", "web"];
 
+/// Which stages of meshes, animations and timings are made where they are not up to date; the others are only looked up.
+#[derive(Debug, Clone, PartialEq)]
+enum Making {
+    All,
+    None,
+    /// The one with this name, which is a job.
+    Only(String),
+}
+
 /// One study being worked on.
 pub(crate) struct Pipeline<'a> {
     study: &'a Study,
     store: Store,
     fields: Fields<'a>,
     threads: usize,
-    /// Meshes, animations and timings are only looked up, never made.
-    frozen: bool,
+    /// Which meshes, animations and timings are made where they are not up to date.
+    making: Making,
     /// What was found for methods with a budget.
     spacings: RwLock<Spacings>,
     accuracies: Mutex<Accuracies>,
@@ -75,7 +88,7 @@ impl<'a> Pipeline<'a> {
             store,
             fields: Fields::new(study),
             threads,
-            frozen: false,
+            making: Making::All,
             spacings: RwLock::default(),
             accuracies: Mutex::default(),
             failed: RwLock::default(),
@@ -92,8 +105,8 @@ impl<'a> Pipeline<'a> {
         let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
         let stills = self.stills()?;
         let timings = self.timings(&PlanLength::Short)?;
-        let chunks = self.chunk_times()?;
-        let stored = self.stored_times()?;
+        let chunks = self.chunk_times(None)?;
+        let stored = self.stored_times(None)?;
         let times = Times { whole: &timings, chunks: &chunks, stored: &stored };
         let shown = self.shown_first(&meshes, &times)?;
         let pictures = self.pictures(&turntables, &shown)?;
@@ -108,7 +121,7 @@ impl<'a> Pipeline<'a> {
 
     /// Tables, figures and the page again, from what is there.
     pub(crate) fn report(&mut self) -> Result<Vec<String>> {
-        self.frozen = true;
+        self.making = Making::None;
         self.study()
     }
 
@@ -170,18 +183,47 @@ impl<'a> Pipeline<'a> {
         crate::manifest::write(&crate::manifest::Origin::of(self.study)?, &self.store)
     }
 
-    /// Does a stage that makes meshes, animations or timings; when frozen, only looks it up.
+    /// Does a stage that makes meshes, animations or timings, or looks it up: [`Making`] says which. A program or a family that
+    /// failed as a job has left a word behind, so that whoever looks it up leaves it out as well.
     fn stage(
         &self,
         name: &str,
         inputs: Inputs,
         make: impl FnOnce(&mut Writer<'_>) -> Result<()>,
     ) -> Result<Stamp> {
-        if self.frozen {
-            let missing = || format!("{name} is not up to date: run `isostudy study` first");
-            return self.store.peek(name, inputs).with_context(missing);
+        if self.making == Making::All {
+            return self.store.stage(name, inputs, make).with_context(|| name.to_owned());
         }
-        self.store.stage(name, inputs, make).with_context(|| name.to_owned())
+        let is_job = matches!(&self.making, Making::Only(job) if job == name);
+        let is_made = self.store.peek(name, inputs.clone()).filter(|_| !(is_job && self.store.forced()));
+        if let Some(stamp) = is_made {
+            return Ok(stamp);
+        }
+        let failure = format!("failed/{name}");
+        if let Some(failed) = self.store.peek(&failure, inputs.clone())
+            && !(is_job && self.store.forced())
+        {
+            let file = self.store.root().join(failed.file(".json"));
+            let why: String =
+                serde_json::from_slice(&input::bytes(&file)?).with_context(|| file.display().to_string())?;
+            return Err(CannotMake(why).into());
+        }
+        match &self.making {
+            Making::Only(_) if is_job => {
+                let made = self.store.stage(name, inputs.clone(), make).with_context(|| name.to_owned());
+                if let Err(error) = &made
+                    && made::own_failure(error).is_some()
+                {
+                    self.store.stage(&failure, inputs, |writer| {
+                        let file = format!("failed/{}.json", name.replace('/', "."));
+                        writer.write_json(&file, &format!("{error:#}"))
+                    })?;
+                }
+                made
+            }
+            Making::Only(job) => bail!("{name} is not up to date, and job {job} needs it: it comes first"),
+            _ => bail!("{name} is not up to date: run `isostudy study` first"),
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -62,7 +62,7 @@ pub(crate) struct FileStamp {
 }
 
 /// What a stage depends on: labelled texts, digested in order.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Inputs {
     digest: Sha256,
 }
@@ -81,10 +81,27 @@ impl Store {
     pub(crate) fn open(root: &Path, force: bool) -> Result<Self> {
         let stamps = root.join(STAMPS);
         fs::create_dir_all(&stamps).with_context(|| format!("cannot make {}", stamps.display()))?;
-        let lock = lock(&stamps.join("lock"))?;
+        let lock = lock(&stamps.join("lock"), File::try_lock)?;
         if lock.is_some() {
             sweep(root)?;
         }
+        Ok(Self { root: root.into(), force, touched: Mutex::default(), _lock: lock })
+    }
+
+    /// A folder that is neither made nor read: of what asks which stages there are.
+    pub(crate) fn nowhere(root: &Path) -> Self {
+        Self { root: root.into(), force: false, touched: Mutex::default(), _lock: None }
+    }
+
+    /// Opens or makes the folder beside others that work on other stages of it, on this machine or another. What a killed run left
+    /// half-written stays: it may be another's that is at work.
+    ///
+    /// # Errors
+    /// If the folder cannot be made, or a run of the whole study holds it.
+    pub(crate) fn open_beside(root: &Path, force: bool) -> Result<Self> {
+        let stamps = root.join(STAMPS);
+        fs::create_dir_all(&stamps).with_context(|| format!("cannot make {}", stamps.display()))?;
+        let lock = lock(&stamps.join("lock"), File::try_lock_shared)?;
         Ok(Self { root: root.into(), force, touched: Mutex::default(), _lock: lock })
     }
 
@@ -286,9 +303,10 @@ impl Stamp {
     }
 }
 
-/// Takes the lock, or `None` where the folder cannot be written and so no other run can either.
-fn lock(path: &Path) -> Result<Option<File>> {
-    let file = match File::create(path) {
+/// Takes the lock, or `None` where the folder cannot be written and so no other run can either, or where its file system has none.
+fn lock(path: &Path, take: impl Fn(&File) -> Result<(), TryLockError>) -> Result<Option<File>> {
+    // Opened and not made anew: what is held is the file.
+    let file = match File::options().create(true).truncate(false).write(true).open(path) {
         Ok(file) => file,
         Err(error) if matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem) => {
             return Ok(None);
@@ -297,10 +315,14 @@ fn lock(path: &Path) -> Result<Option<File>> {
     };
     // A child that is being started has our files for a moment, and a lock that was just given up with them.
     for _ in 0..LOCK_TRIES {
-        if file.try_lock().is_ok() {
-            return Ok(Some(file));
+        match take(&file) {
+            Ok(()) => return Ok(Some(file)),
+            Err(TryLockError::WouldBlock) => std::thread::sleep(LOCK_PAUSE),
+            Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => return Ok(None),
+            Err(TryLockError::Error(error)) => {
+                return Err(error).with_context(|| format!("cannot lock {}", path.display()));
+            }
         }
-        std::thread::sleep(LOCK_PAUSE);
     }
     bail!("{} says that another run is at work there", path.display())
 }

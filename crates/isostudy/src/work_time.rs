@@ -1,4 +1,4 @@
-//! How long a study's meshes take, estimated before the first is made.
+//! How long a study's meshes take and how large they are, estimated before the first is made.
 
 use crate::fields::Fields;
 use crate::prepare::{Wanted, grid};
@@ -9,13 +9,15 @@ use isostudy_design::record::Purpose;
 use isostudy_design::{Configuration, Study};
 use isostudy_extract::{Execution, Extractor, Method};
 use isostudy_field::StudyField;
+use isostudy_mesh::TriangleMesh;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Cells a second, and far less than any method needs: what ends in time at this pace is not tried.
 const SLOWEST: f64 = 1e6;
 /// Cells along the longest side of an object's box, in the two trials of each configuration.
 const TRIALS: [u32; 2] = [16, 32];
-/// How often each mesh is made.
+/// How often each mesh is made where an answer hangs on it.
 const REPEATS: usize = 3;
 /// How times grow with the cells along a side: with their square, as the surface, up to their cube, as the volume.
 const POWERS: [f64; 2] = [2.0, 3.0];
@@ -32,9 +34,10 @@ struct Work<'a> {
 }
 
 /// Refuses a study of more than `limits.hours`. One that is far below by any measure is not tried; of the others each configuration is
-/// extracted and measured on 16 and on 32 cells, three times on one thread, and the least time grows from there as it did between them.
+/// extracted on 16 and on 32 cells, three times on one thread, and the least time grows from there as it did between them. On each object
+/// one mesh is measured, which stands for the others.
 ///
-/// Distances are measured once. Programs, animations and pages are not in it, nor is `isostudy bench`.
+/// Programs, animations and pages are not in it, nor is `isostudy bench`.
 ///
 /// # Errors
 /// If it takes longer, with the number and what takes most; if a field cannot be made.
@@ -47,20 +50,11 @@ pub(crate) fn check(study: &Study) -> Result<()> {
     }
     // What is most likely too much comes first, and what comes after too much is not tried.
     works.sort_by(|a, b| b.all_cells().total_cmp(&a.all_cells()));
-    let fields = Fields::new(study);
-    let mut known: Vec<(&Work, Tried)> = Vec::new();
+    let mut trials = Trials { repeats: REPEATS, ..Trials::new(study) };
     let mut total_s = 0.0;
     for work in &works {
-        // Both purposes have one method, unless positions are accumulated.
-        let of_the_same = known.iter().find(|(other, _)| {
-            other.configuration.id == work.configuration.id && other.method == work.method
-        });
-        let tried = match of_the_same {
-            Some((_, tried)) => *tried,
-            None => tried(study, &fields, work)?,
-        };
-        known.push((work, tried));
-        total_s += work.seconds(tried);
+        let cost = trials.of(work)?;
+        total_s += work.times * cost.extracting_s + cost.measuring_s;
         if total_s > limit_s {
             let first = works[0].place(study);
             bail!(
@@ -85,49 +79,130 @@ fn works(study: &Study) -> Result<Vec<Work<'_>>> {
     for configuration in &study.configurations {
         let object = study.object(configuration);
         for (purpose, times) in [(Purpose::Benchmark, 1.0 + timed), (Purpose::Stimulus, 1.0)] {
-            let Recipe::Extractor(method) = recipe(study, configuration.id.method, purpose)? else {
-                continue;
-            };
             let spacing = Wanted::For(purpose).spacing(object);
-            let sides = [0, 1, 2].map(|axis| ((object.max[axis] - object.min[axis]) / spacing).max(1.0));
-            let cells = [sides.into_iter().fold(1.0, f64::max), sides.into_iter().product()];
-            works.push(Work { configuration, method, purpose, cells, times });
+            works.extend(Work::of(study, configuration, purpose, spacing, times)?);
         }
     }
     Ok(works)
 }
 
-/// Seconds to extract and to measure a mesh, in each of the trials.
-type Tried = [[f64; 2]; 2];
-
-/// Tries a configuration. One that cannot be tried takes no time: others say what is wrong with it.
-fn tried(study: &Study, fields: &Fields<'_>, work: &Work) -> Result<Tried> {
-    let object = study.object(work.configuration);
-    let made = fields.get(work.configuration.object)?;
-    let field: &dyn StudyField = &*made.field;
-    let execution = Execution { threads: 1 };
-    let mut tried = [[f64::INFINITY, 0.0]; 2];
-    for (cells, seconds) in TRIALS.into_iter().zip(&mut tried) {
-        let grid = grid(object, Wanted::Cells(cells, work.purpose).spacing(object));
-        // The least of them is the least disturbed by whatever else runs.
-        for repeat in 0..REPEATS {
-            let began = Instant::now();
-            let extraction =
-                work.method.extract(&mut Extractor::new(), field.into(), &grid, made.isovalue, &execution);
-            let Ok(extraction) = extraction else { return Ok(Tried::default()) };
-            seconds[0] = began.elapsed().as_secs_f64().min(seconds[0]);
-            if repeat == 0 {
-                let began = Instant::now();
-                let of =
-                    isostudy_extract::accuracy(&extraction.mesh, field, made.isovalue, &grid, &execution);
-                seconds[1] = if of.is_ok() { began.elapsed().as_secs_f64() } else { 0.0 };
-            }
-        }
-    }
-    Ok(tried)
+/// What one mesh is expected to take.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cost {
+    pub(crate) extracting_s: f64,
+    /// Its distances to the isosurface and back.
+    pub(crate) measuring_s: f64,
+    /// Of the mesh itself.
+    pub(crate) mesh_bytes: f64,
 }
 
-impl Work<'_> {
+/// Trials of a study's configurations, each made once.
+pub(crate) struct Trials<'a> {
+    study: &'a Study,
+    fields: Fields<'a>,
+    repeats: usize,
+    /// By the place of an object, and a method.
+    known: Vec<(usize, Method, Tried)>,
+    /// Seconds to measure any mesh, and for each byte of it, for each object of which one was.
+    measured: BTreeMap<usize, [f64; 2]>,
+}
+
+impl<'a> Trials<'a> {
+    pub(crate) fn new(study: &'a Study) -> Self {
+        Self { study, fields: Fields::new(study), repeats: 1, known: Vec::new(), measured: BTreeMap::new() }
+    }
+
+    /// What a mesh of a configuration at a spacing takes; `None` of what is no extractor of ours.
+    ///
+    /// # Errors
+    /// If its recipe or its field cannot be made.
+    pub(crate) fn cost(
+        &mut self,
+        configuration: &'a Configuration,
+        purpose: Purpose,
+        spacing: f64,
+    ) -> Result<Option<Cost>> {
+        let work = Work::of(self.study, configuration, purpose, spacing, 1.0)?;
+        work.map(|work| self.of(&work)).transpose()
+    }
+
+    fn of(&mut self, work: &Work<'_>) -> Result<Cost> {
+        let object = work.configuration.object;
+        let known = self.known.iter().find(|(other, method, _)| *other == object && *method == work.method);
+        if let Some((.., tried)) = known {
+            return Ok(work.cost(*tried));
+        }
+        let tried = self.tried(work)?;
+        self.known.push((object, work.method, tried));
+        Ok(work.cost(tried))
+    }
+
+    /// Tries a configuration. One that cannot be tried takes no time: others say what is wrong with it.
+    fn tried(&mut self, work: &Work<'_>) -> Result<Tried> {
+        let object = self.study.object(work.configuration);
+        let made = self.fields.get(work.configuration.object)?;
+        let field: &dyn StudyField = &*made.field;
+        let execution = Execution { threads: 1 };
+        let is_first = !self.measured.contains_key(&work.configuration.object);
+        let mut tried = [[f64::INFINITY, 0.0, 0.0]; 2];
+        for (cells, found) in TRIALS.into_iter().zip(&mut tried) {
+            let grid = grid(object, Wanted::Cells(cells, work.purpose).spacing(object));
+            let mut mesh = TriangleMesh::default();
+            // The least of them is the least disturbed by whatever else runs.
+            for _ in 0..self.repeats {
+                let began = Instant::now();
+                let extraction = work.method.extract(
+                    &mut Extractor::new(),
+                    field.into(),
+                    &grid,
+                    made.isovalue,
+                    &execution,
+                );
+                let Ok(extraction) = extraction else { return Ok(Tried::default()) };
+                found[0] = began.elapsed().as_secs_f64().min(found[0]);
+                mesh = extraction.mesh;
+            }
+            found[2] = (24 * mesh.positions.len() + 12 * mesh.triangles.len()) as f64;
+            // Most of what measuring costs is the field's, so one mesh stands for those of all methods.
+            if is_first {
+                let began = Instant::now();
+                let of = isostudy_extract::accuracy(&mesh, field, made.isovalue, &grid, &execution);
+                found[1] = if of.is_ok() { began.elapsed().as_secs_f64() } else { 0.0 };
+            }
+        }
+        let [coarse, fine] = tried;
+        let growth = (fine[1] - coarse[1]) / (fine[2] - coarse[2]);
+        let line =
+            [coarse[1] - growth * coarse[2], growth].map(|of| if of.is_finite() { of.max(0.0) } else { 0.0 });
+        let [at_all, of_byte] = *self.measured.entry(work.configuration.object).or_insert(line);
+        for found in &mut tried {
+            found[1] = at_all + of_byte * found[2];
+        }
+        Ok(tried)
+    }
+}
+
+/// Seconds to extract and to measure a mesh, and its bytes, in each of the trials.
+type Tried = [[f64; 3]; 2];
+
+impl<'a> Work<'a> {
+    /// `None` of what is no extractor of ours.
+    fn of(
+        study: &Study,
+        configuration: &'a Configuration,
+        purpose: Purpose,
+        spacing: f64,
+        times: f64,
+    ) -> Result<Option<Self>> {
+        let Recipe::Extractor(method) = recipe(study, configuration.id.method, purpose)? else {
+            return Ok(None);
+        };
+        let object = study.object(configuration);
+        let sides = [0, 1, 2].map(|axis| ((object.max[axis] - object.min[axis]) / spacing).max(1.0));
+        let cells = [sides.into_iter().fold(1.0, f64::max), sides.into_iter().product()];
+        Ok(Some(Self { configuration, method, purpose, cells, times }))
+    }
+
     /// Cells of all its extractions.
     fn all_cells(&self) -> f64 {
         self.times * self.cells[1]
@@ -144,14 +219,14 @@ impl Work<'_> {
         format!("{} with objects[{}].{key} = {spacing:?}", configuration.id, configuration.object)
     }
 
-    /// Seconds for all of it, by trials.
-    fn seconds(&self, [coarse, fine]: Tried) -> f64 {
+    /// By trials.
+    fn cost(&self, [coarse, fine]: Tried) -> Cost {
         let ratio = f64::from(TRIALS[1]) / f64::from(TRIALS[0]);
-        let [extracting, measuring] = [0, 1].map(|k| {
+        let [extracting_s, measuring_s, mesh_bytes] = [0, 1, 2].map(|k| {
             let power = (fine[k] / coarse[k]).log2() / ratio.log2();
             let power = if power.is_nan() { POWERS[0] } else { power.clamp(POWERS[0], POWERS[1]) };
             fine[k] * (self.cells[0] / f64::from(TRIALS[1])).powf(power)
         });
-        self.times * extracting + measuring
+        Cost { extracting_s, measuring_s, mesh_bytes }
     }
 }

@@ -51,7 +51,7 @@ impl Pipeline<'_> {
     }
 
     /// Extracts and measures the configurations in `only`, or all if it is empty.
-    fn meshes(&self, purposes: &[Purpose], only: &[ConfigurationId]) -> Result<Meshes> {
+    pub(super) fn meshes(&self, purposes: &[Purpose], only: &[ConfigurationId]) -> Result<Meshes> {
         self.budgets(purposes, only)?;
         let selected = self.selected(only);
         let count = selected.len() * purposes.len();

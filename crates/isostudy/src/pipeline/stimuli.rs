@@ -74,7 +74,7 @@ impl Pipeline<'_> {
         Ok(stamps)
     }
 
-    fn turntable(
+    pub(super) fn turntable(
         &self,
         configuration: &Configuration,
         code: &str,
@@ -121,7 +121,7 @@ impl Pipeline<'_> {
         Ok(stamps)
     }
 
-    fn pair(&self, stimulus: &Stimulus, left: &Stamp, right: &Stamp) -> Result<Stamp> {
+    pub(super) fn pair(&self, stimulus: &Stimulus, left: &Stamp, right: &Stamp) -> Result<Stamp> {
         let Stimulus { code, left: left_id, right: right_id } = stimulus;
         let scale = self.study.file.stimuli.pair_scale;
         let inputs = Inputs::of_sources(source_digests::PICTURES)
@@ -217,7 +217,7 @@ impl Pipeline<'_> {
         Ok(stamps)
     }
 
-    fn still(&self, still: &StillSection, step: &Step) -> Result<Stamp> {
+    pub(super) fn still(&self, still: &StillSection, step: &Step) -> Result<Stamp> {
         let named = self.study.configurations.iter().find(|c| c.id == still.configuration);
         let configuration = named.expect("checked when the study was read");
         let object = self.study.object(configuration);

@@ -286,7 +286,7 @@ fn write_tables(writer: &mut Writer<'_>, tables: &[Table]) -> Result<()> {
 }
 
 /// The study file, its answers and its published numbers.
-fn study_inputs(study: &Study) -> Result<Inputs> {
+pub(super) fn study_inputs(study: &Study) -> Result<Inputs> {
     let published = &study.published;
     let mut inputs = Inputs::of_sources(source_digests::TABLES)
         .value("study", &study.file)

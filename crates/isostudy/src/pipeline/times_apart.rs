@@ -4,10 +4,10 @@
 use super::Pipeline;
 use crate::chunk_times::chunk_times;
 use crate::prepare::{Prepared, Wanted};
+use crate::source_digests;
 use crate::store::{FileStamp, Inputs, Stamp};
 use crate::stored_times::stored_times;
 use crate::terminal::progress::Step;
-use crate::{machine, source_digests};
 use anyhow::{Context, Result};
 use isostudy_design::record::Purpose;
 use isostudy_design::{Configuration, ConfigurationId};
@@ -18,8 +18,9 @@ use serde::de::DeserializeOwned;
 const TICKS_AN_OBJECT: usize = 1000;
 
 impl Pipeline<'_> {
-    /// Times the chunks of every configuration with its object's own cubes; nothing where the study asks for none.
-    pub(super) fn chunk_times(&self) -> Result<Vec<Stamp>> {
+    /// Times the chunks of every configuration with its object's own cubes, or of those of the object with one place; nothing where the
+    /// study asks for none.
+    pub(super) fn chunk_times(&self, object: Option<usize>) -> Result<Vec<Stamp>> {
         let section = &self.study.file.benchmark;
         if section.chunks == 0 {
             return Ok(Vec::new());
@@ -27,11 +28,12 @@ impl Pipeline<'_> {
         let time = |all: &[Prepared<'_>], progress: &dyn Fn(usize, usize)| {
             chunk_times(all, section.chunks, section.short_iterations, progress)
         };
-        self.timed_apart("chunks", time, |of| &of.id)
+        self.timed_apart("chunks", object, time, |of| &of.id)
     }
 
-    /// Times every configuration with its object's own cubes from stored samples; nothing where the study does not ask for it.
-    pub(super) fn stored_times(&self) -> Result<Vec<Stamp>> {
+    /// Times every configuration with its object's own cubes from stored samples, or those of the object with one place; nothing where
+    /// the study does not ask for it.
+    pub(super) fn stored_times(&self, object: Option<usize>) -> Result<Vec<Stamp>> {
         let section = &self.study.file.benchmark;
         if !section.stored {
             return Ok(Vec::new());
@@ -39,30 +41,32 @@ impl Pipeline<'_> {
         let time = |all: &[Prepared<'_>], progress: &dyn Fn(usize, usize)| {
             stored_times(all, section.chunks, section.short_iterations, progress)
         };
-        self.timed_apart("stored", time, |of| &of.id)
+        self.timed_apart("stored", object, time, |of| &of.id)
     }
 
     /// A stage for each object, with a file `bench/NAME/ID.json` for each of its configurations with its own cubes that has times.
     fn timed_apart<T: Serialize>(
         &self,
         name: &'static str,
+        object: Option<usize>,
         time: impl Fn(&[Prepared<'_>], &dyn Fn(usize, usize)) -> Result<Vec<T>>,
         id: impl Fn(&T) -> &ConfigurationId,
     ) -> Result<Vec<Stamp>> {
         let section = &self.study.file.benchmark;
         // Another look is the same work once more.
         let is_timed = |c: &&Configuration| {
-            self.study.method(c.id.method).budget.is_none() && !self.study.is_repeated(c.id.method)
+            object.is_none_or(|object| object == c.object)
+                && self.study.method(c.id.method).budget.is_none()
+                && !self.study.is_repeated(c.id.method)
         };
         let selected: Vec<&Configuration> = self.selected(&[]).into_iter().filter(is_timed).collect();
         let objects: Vec<&[&Configuration]> = selected.chunk_by(|a, b| a.object == b.object).collect();
         let step = Step::begin(name, objects.len(), objects.len() * TICKS_AN_OBJECT);
-        let machine = machine::read();
         let mut stamps = Vec::new();
         for (place, configurations) in objects.into_iter().enumerate() {
             let object = self.study.object(configurations[0]);
             let mut inputs = Inputs::of_sources(source_digests::TIMINGS)
-                .value("machine", &machine.lasting())
+                .value("machine", &self.machine(&format!("{name}/{}", object.id))?.lasting())
                 .value("spacing", &object.benchmark_spacing)
                 .value("plan", &(section.chunks, section.short_iterations));
             for configuration in configurations {

@@ -1,8 +1,8 @@
 //! The benchmark: every configuration timed, in rounds, in processes of its own; and what follows from the samples.
 
-use super::Pipeline;
 use super::formats::write_table;
 use super::worker::{Job, timed};
+use super::{Making, Pipeline};
 use crate::store::{Inputs, Stamp, remove_if_there};
 use crate::terminal::progress::Step;
 use crate::{machine, recipe, run_file, source_digests};
@@ -43,10 +43,10 @@ impl Pipeline<'_> {
         if self.spacings().is_empty() {
             self.budgets(&[Purpose::Benchmark], &[])?;
         }
-        let machine = machine::read();
-        let full = PlanLength::Full;
+        let (machine, full) = (self.machine(stage_name(length))?, PlanLength::Full);
         if *length == PlanLength::Short
-            && let Some(full) = self.store.peek(stage_name(&full), self.inputs(&full, &machine)?)
+            && let Some(full) =
+                self.store.peek(stage_name(&full), self.inputs(&full, &self.machine(stage_name(&full))?)?)
         {
             tell!("timings: the full run is up to date and stands for the short one");
             return Ok(full);
@@ -86,6 +86,25 @@ impl Pipeline<'_> {
         step.count_all(stamp.redone);
         step.end();
         Ok(stamp)
+    }
+
+    /// The machine whose times a stage has: this one, or where times are only looked up that which measured them.
+    pub(super) fn machine(&self, stage: &str) -> Result<Machine> {
+        let is_made = match &self.making {
+            Making::All => true,
+            Making::Only(job) => job == stage,
+            Making::None => false,
+        };
+        let run = ["bench/full", "bench/short"].map(|name| self.store.root().join(name).join("run.json"));
+        let measured = match stage {
+            "bench/full" => &run[..1],
+            "bench/short" => &run[1..],
+            _ => &run[..],
+        };
+        match measured.iter().find(|path| path.is_file()).filter(|_| !is_made) {
+            Some(path) => Ok(run_file::read(path)?.machine),
+            None => Ok(machine::read()),
+        }
     }
 
     /// Writes what follows from a run, as JSON, CSV, Markdown and LaTeX, and returns those tables as Markdown that a terminal

@@ -14,6 +14,8 @@ use anyhow::{Context, Result};
 use catalogue::Catalogue;
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use isostudy_design::Study;
+use isostudy_design::config::ViewerSection;
 use library::Library;
 use rayon::prelude::*;
 use std::io::Write;
@@ -50,7 +52,7 @@ impl Pipeline<'_> {
             tell!("viewer         left out: {} lacks three.js, which `make three` fetches", section.three);
             return Ok(Viewer::WithoutLibrary);
         };
-        let levels = self.levels(meshes, &section.from_fine_to_coarse())?;
+        let levels = self.levels_of(meshes, &self.selected(&[]), &section.from_fine_to_coarse())?;
         let catalogue = Catalogue::of(self.study, &levels, &self.left_out(), shown);
         let mut inputs = Inputs::of_sources(source_digests::PAGES)
             .text("library", &library.digest())
@@ -78,6 +80,14 @@ impl Pipeline<'_> {
         step.end();
         Ok(Viewer::Made)
     }
+}
+
+/// Whether the library is there for a viewer that a study asks for.
+///
+/// # Errors
+/// If a file of it cannot be read, or is of another version.
+pub(super) fn has_library(study: &Study, section: &ViewerSection) -> Result<bool> {
+    Ok(Library::read(&study.resolve(&section.three))?.is_some())
 }
 
 /// The same bytes for the same input.

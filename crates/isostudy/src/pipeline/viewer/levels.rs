@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 const AS_STIMULI: f64 = 1.0;
 
 /// A configuration at one resolution.
-pub(super) struct Level {
+pub(in crate::pipeline) struct Level {
     pub(super) id: ConfigurationId,
     /// Its files: a record, and a mesh if there is one.
     pub(super) stamp: Stamp,
@@ -29,7 +29,7 @@ pub(super) struct Level {
 
 /// What a level's record says.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Entry {
+pub(in crate::pipeline) struct Entry {
     schema: u32,
     /// Multiple of the spacing of the animations.
     pub(super) factor: f64,
@@ -56,8 +56,12 @@ impl Level {
 impl Pipeline<'_> {
     /// The meshes that the viewer shows, configuration by configuration, from fine to coarse. At a spacing of which a method
     /// makes no mesh, there is a reason in its place.
-    pub(super) fn levels(&self, meshes: &Meshes, factors: &[f64]) -> Result<Vec<Level>> {
-        let selected = self.selected(&[]);
+    pub(in crate::pipeline) fn levels_of(
+        &self,
+        meshes: &Meshes,
+        selected: &[&Configuration],
+        factors: &[f64],
+    ) -> Result<Vec<Level>> {
         let count = selected.len() * factors.len();
         let step = Step::begin("viewer meshes", count, count * TICKS_A_MESH);
         let mut levels = Vec::new();
@@ -145,7 +149,8 @@ impl Pipeline<'_> {
             Recipe::Program(_) => {}
         }
         let mut extractor = Extractor::new().with_progress(step.within(TICKS_A_MESH));
-        match prepared.make_any(&mut extractor, &Execution { threads: self.threads }) {
+        // On one thread, so that calls of the field are counted: no record may depend on threads.
+        match prepared.make_any(&mut extractor, &Execution { threads: 1 }) {
             Ok(made) if made.mesh.triangles.is_empty() => Ok(Err(match prepared.missed() {
                 Some(why) => format!("no surface was reached: {why}"),
                 None => "there is no surface".into(),

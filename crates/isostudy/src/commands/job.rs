@@ -1,0 +1,75 @@
+//! `isostudy job`: jobs of a study, beside others on the same folder.
+
+use super::checked_study;
+use super::study_run::{Run, default_folder, with_page};
+use crate::outcome::Outcome;
+use crate::pipeline::Pipeline;
+use crate::store::Store;
+use crate::terminal::counted;
+use crate::{consent, origin, recipe};
+use anyhow::{Result, bail};
+use clap::Args;
+
+/// The job that takes the whole folder.
+const REPORT: &str = "report";
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A job that is up to date is not done again. Jobs may be killed at any moment, and run side by side on one
+folder, on one machine or several. A job ends with 0 where a program failed: the report leaves it out.
+
+Example:
+  isostudy job configs/quick.toml mesh/benchmark/ss_bi mesh/benchmark/ss_bu")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    run: Run,
+    /// Jobs, as `isostudy plan` lists them; several of one object share what is found of it
+    #[arg(required = true, value_name = "ID")]
+    ids: Vec<String>,
+    /// Refuse if a job no longer has this digest of the plan: then the study, or a file that it names, has changed. One for each ID
+    #[arg(long, value_name = "HEX", value_delimiter = ',')]
+    digests: Vec<String>,
+}
+
+/// Does the jobs, in this order.
+///
+/// # Errors
+/// If there is no such job, or another digest; if a job that it needs was not done.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let Arguments { run, ids, digests } = arguments;
+    if !digests.is_empty() && digests.len() != ids.len() {
+        bail!(
+            "--digests has {} for {}",
+            counted(digests.len() as u64, "digest"),
+            counted(ids.len() as u64, "job")
+        );
+    }
+    let checked = || ids.iter().zip(digests);
+    if ids.iter().any(|id| id == REPORT) {
+        if ids.len() > 1 {
+            bail!("{REPORT}: it takes the whole folder, and is the only job of a command");
+        }
+        return with_page(run, |pipeline| {
+            checked().try_for_each(|(id, digest)| pipeline.check_digest(id, digest))?;
+            pipeline.report()
+        });
+    }
+    let study = checked_study::load(&run.study)?;
+    consent::ask(&study, run.allow_programs, run.sandbox)?;
+    recipe::check(&study)?;
+    let threads = run.threads as usize;
+    if threads > 0 {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+    }
+    let out = run.out.clone().unwrap_or_else(|| default_folder(&study));
+    let store = Store::open_beside(&out, run.force)?;
+    origin::claim(&out, &study.path)?;
+    let mut pipeline = Pipeline::new(&study, store, threads);
+    checked().try_for_each(|(id, digest)| pipeline.check_digest(id, digest))?;
+    for id in ids {
+        if let Some(why) = pipeline.job(id)? {
+            tell!("left out: {why}");
+        }
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,62 @@
+//! `isostudy plan`: the jobs of a study, for a scheduler.
+
+use super::checked_study;
+use super::study_run::default_folder;
+use crate::outcome::Outcome;
+use crate::pipeline::{Pipeline, Planned, summary};
+use crate::store::{Store, sha256};
+use crate::terminal::{counted, say};
+use crate::{input, recipe};
+use anyhow::Result;
+use clap::Args;
+use serde::Serialize;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  isostudy plan configs/quick.toml --json > plan.json
+  isostudy job configs/quick.toml mesh/benchmark/ss_bi")]
+pub(crate) struct Arguments {
+    /// Study file, such as configs/paper.toml
+    study: PathBuf,
+    /// Folder for results [default: results/<study id>]
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print JSON: every job with what it needs, leaves, depends on and is expected to take
+    #[arg(long)]
+    json: bool,
+}
+
+/// What a scheduler reads.
+#[derive(Serialize)]
+struct Plan {
+    schema: u32,
+    study: PathBuf,
+    /// Of the study file.
+    sha256: String,
+    out: PathBuf,
+    jobs: Vec<Planned>,
+}
+
+/// Lists the jobs; nothing is made but trials on few cells.
+///
+/// # Errors
+/// If the study is wrong.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let study = checked_study::load(&arguments.study)?;
+    recipe::check(&study)?;
+    let out = arguments.out.clone().unwrap_or_else(|| default_folder(&study));
+    let jobs = Pipeline::new(&study, Store::nowhere(&out), 1).planned()?;
+    if arguments.json {
+        let sha256 = sha256(&input::bytes(&study.path)?);
+        let plan = Plan { schema: 1, study: arguments.study.clone(), sha256, out, jobs };
+        say(&serde_json::to_string_pretty(&plan)?)?;
+        return Ok(Outcome::Done);
+    }
+    for (kind, of_kind, seconds) in summary(&jobs) {
+        say(&format!("{kind:<12} {}, about {seconds:.0} s on one core", counted(of_kind as u64, "job")))?;
+    }
+    say(&format!("{} in all; --json lists them", counted(jobs.len() as u64, "job")))?;
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,492 @@
+//! A study as jobs that any machine can do: which there are, what each needs and costs, and one of them done.
+//!
+//! A job is a stage of the pipeline, by the stage's own name, or all that follows from the others. What does a study in one run and what
+//! does it job by job are the same functions: a job looks up every stage but its own.
+
+use super::meshes::{TICKS_A_MESH, purpose_name};
+use super::stimuli::MadeWith;
+use super::tables::study_inputs;
+use super::viewer::has_library;
+use super::{Making, Pipeline, PlanLength};
+use crate::memory::{Needs, OfVolume};
+use crate::prepare::{self, Wanted};
+use crate::recipe::{self, Recipe, recipe};
+use crate::store::{Inputs, Stamp};
+use crate::terminal::progress::Step;
+use crate::work_time::Trials;
+use crate::{fields, source_digests};
+use anyhow::{Context, Result, bail};
+use isostudy_design::config::StillSection;
+use isostudy_design::forms::Stimulus;
+use isostudy_design::record::Purpose;
+use isostudy_design::wording::did_you_mean;
+use isostudy_design::{Configuration, ConfigurationId, Study};
+use isostudy_extract::Execution;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::PoisonError;
+
+/// The job that makes tables, figures and pages of all the others.
+const REPORT: &str = "report";
+/// What a process takes beside the grid, the volume and the mesh.
+const PROCESS_BYTES: f64 = 96.0 * 1024.0 * 1024.0;
+/// How often a mesh is in memory while it is measured: itself, trees over it, and the points of its surface.
+const MESHES_HELD: f64 = 10.0;
+/// Seconds for a pixel of an animation, drawn at the usual supersampling and compressed.
+const PIXEL_S: f64 = 1.5e-7;
+/// Seconds for tables and pages, for each configuration.
+const PAGES_S: f64 = 0.25;
+
+/// A part of a study that is done by itself.
+#[derive(Debug, Clone)]
+enum Job<'s> {
+    Budget(Purpose, &'s Configuration),
+    Mesh(Purpose, &'s Configuration),
+    Turntable(&'s Configuration),
+    Pair(Stimulus),
+    Still(&'s StillSection),
+    /// At this multiple of the stimulus spacing.
+    ViewerMesh(&'s Configuration, f64),
+    Timings,
+    /// Of the object with this place.
+    Chunks(usize),
+    Stored(usize),
+    Report,
+}
+
+/// A job, as a scheduler needs to know it.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Planned {
+    /// What `isostudy job` calls it.
+    pub(crate) id: String,
+    pub(crate) kind: &'static str,
+    /// Jobs that come first.
+    pub(crate) needs: Vec<String>,
+    /// Files that it leaves in the folder of results; none are listed of the report.
+    pub(crate) outputs: Vec<String>,
+    /// Of everything that it depends on, the jobs that it needs included.
+    pub(crate) digest: String,
+    /// Whether nothing else may run on its node.
+    pub(crate) exclusive: bool,
+    /// On one core, unless it is exclusive; `None` for what a program or a family makes, which is not tried.
+    pub(crate) expected_s: Option<f64>,
+    pub(crate) expected_bytes: Option<u64>,
+}
+
+impl Job<'_> {
+    fn id(&self, study: &Study) -> String {
+        match self {
+            Self::Budget(purpose, of) => format!("budget/{}/{}", purpose_name(*purpose), of.id),
+            Self::Mesh(purpose, of) => format!("mesh/{}/{}", purpose_name(*purpose), of.id),
+            Self::Turntable(of) => format!("turntable/{}", of.id),
+            Self::Pair(of) => format!("pair/{}~{}", of.left, of.right),
+            Self::Still(of) => format!("still/{}", of.id),
+            Self::ViewerMesh(of, factor) => format!("viewer/{}/{factor}", of.id),
+            Self::Timings => "bench/short".into(),
+            Self::Chunks(object) => format!("chunks/{}", study.file.objects[*object].id),
+            Self::Stored(object) => format!("stored/{}", study.file.objects[*object].id),
+            Self::Report => REPORT.into(),
+        }
+    }
+
+    fn kind(&self) -> &'static str {
+        match self {
+            Self::Budget(..) => "budget",
+            Self::Mesh(..) => "mesh",
+            Self::Turntable(_) => "turntable",
+            Self::Pair(_) => "pair",
+            Self::Still(_) => "still",
+            Self::ViewerMesh(..) => "viewer mesh",
+            Self::Timings | Self::Chunks(_) | Self::Stored(_) => "timing",
+            Self::Report => REPORT,
+        }
+    }
+
+    /// Whether another job among all those before it has to be done first. What may fail is timed only where its meshes did not.
+    fn needs(&self, other: &Job<'_>, may_fail: &[&Configuration]) -> bool {
+        match (self, other) {
+            (Self::Report, _) => true,
+            (Self::Timings | Self::Chunks(_) | Self::Stored(_), Job::Mesh(purpose, of)) => {
+                *purpose != Purpose::Indexed && may_fail.contains(of)
+            }
+            (Self::Chunks(_) | Self::Stored(_), Job::Timings) => true,
+            (Self::Mesh(purpose, of), Job::Budget(for_, other)) => purpose == for_ && of == other,
+            (Self::Turntable(of) | Self::ViewerMesh(of, _), Job::Mesh(Purpose::Stimulus, other)) => {
+                of == other
+            }
+            (Self::Pair(of), Job::Turntable(other)) => [&of.left, &of.right].contains(&&other.id),
+            (Self::Timings, Job::Budget(Purpose::Benchmark, _)) => true,
+            _ => false,
+        }
+    }
+}
+
+impl<'a> Pipeline<'a> {
+    /// Every job of the study, each after those that it needs.
+    ///
+    /// # Errors
+    /// If a recipe, a field or a file that the study names cannot be read.
+    pub(crate) fn planned(&self) -> Result<Vec<Planned>> {
+        let jobs = self.jobs()?;
+        let may_fail = self.may_fail()?;
+        let mut costs = Trials::new(self.study);
+        let mut planned: Vec<Planned> = Vec::new();
+        for (place, job) in jobs.iter().enumerate() {
+            let needs: Vec<usize> = (0..place).filter(|&other| job.needs(&jobs[other], &may_fail)).collect();
+            let mut digest = Inputs::default().text("job", &self.own_inputs(job)?.finish());
+            for &other in &needs {
+                digest = digest.text(&planned[other].id, &planned[other].digest);
+            }
+            let (expected_s, expected_bytes) = self.cost(job, &mut costs)?;
+            planned.push(Planned {
+                id: job.id(self.study),
+                kind: job.kind(),
+                needs: needs.iter().map(|&other| planned[other].id.clone()).collect(),
+                outputs: self.outputs(job),
+                digest: digest.finish(),
+                exclusive: job.kind() == "timing",
+                expected_s,
+                expected_bytes,
+            });
+        }
+        Ok(planned)
+    }
+
+    /// Does one job and nothing else; it is not done again where it is up to date. Returns why what it makes is left out, where a
+    /// program or a family is to blame. What is found of an object serves the next job on it as well.
+    ///
+    /// # Errors
+    /// If the study has no such job; if a job that it needs is not up to date; what the job returns.
+    pub(crate) fn job(&mut self, id: &str) -> Result<Option<String>> {
+        let (study, jobs) = (self.study, self.jobs()?);
+        let place = place(study, &jobs, id)?;
+        self.making = Making::Only(id.to_owned());
+        self.carry_out(&jobs[place])?;
+        let left_out = std::mem::take(&mut *self.failed.write().unwrap_or_else(PoisonError::into_inner));
+        Ok(left_out.into_iter().next().map(|(of, why)| format!("{of}: {why}")))
+    }
+
+    /// Checks that a job still has the digest that a plan gave it.
+    ///
+    /// # Errors
+    /// If it has another; if the study has no such job.
+    pub(crate) fn check_digest(&self, id: &str, digest: &str) -> Result<()> {
+        let jobs = self.jobs()?;
+        let now = self.digest(&jobs, place(self.study, &jobs, id)?, &self.may_fail()?)?;
+        if now != digest {
+            bail!(
+                "{id}: {} or a file that it names has changed since the plan was made: the job's digest is {now}, and no longer {digest}. \
+                 Make the plan again",
+                self.study.path.display()
+            );
+        }
+        Ok(())
+    }
+
+    /// A job's digest alone.
+    fn digest(&self, jobs: &[Job<'_>], place: usize, may_fail: &[&Configuration]) -> Result<String> {
+        let mut digest = Inputs::default().text("job", &self.own_inputs(&jobs[place])?.finish());
+        for other in (0..place).filter(|&other| jobs[place].needs(&jobs[other], may_fail)) {
+            digest = digest.text(&jobs[other].id(self.study), &self.digest(jobs, other, may_fail)?);
+        }
+        Ok(digest.finish())
+    }
+
+    /// All jobs, in the order in which one run does them.
+    fn jobs(&self) -> Result<Vec<Job<'a>>> {
+        let study = self.study;
+        let all = || study.configurations.iter();
+        let mut purposes = vec![Purpose::Benchmark, Purpose::Stimulus];
+        if recipe::sums_positions(study)? {
+            purposes.push(Purpose::Indexed);
+        }
+        let mut jobs = Vec::new();
+        for &purpose in &purposes {
+            let with_budget = all().filter(|of| study.method(of.id.method).budget.is_some());
+            jobs.extend(with_budget.map(|of| Job::Budget(purpose, of)));
+        }
+        jobs.extend(purposes.iter().flat_map(|&purpose| all().map(move |of| Job::Mesh(purpose, of))));
+        jobs.extend(all().map(Job::Turntable));
+        jobs.extend(study.stimuli().into_iter().map(Job::Pair));
+        jobs.extend(study.file.stills.iter().map(Job::Still));
+        jobs.push(Job::Timings);
+        let objects = 0..study.file.objects.len();
+        let section = &study.file.benchmark;
+        jobs.extend(objects.clone().filter(|_| section.chunks > 0).map(Job::Chunks));
+        jobs.extend(objects.filter(|_| section.stored).map(Job::Stored));
+        if let Some(viewer) = &study.file.viewer
+            && has_library(study, viewer)?
+        {
+            let factors = viewer.from_fine_to_coarse();
+            jobs.extend(all().flat_map(|of| {
+                factors.iter().map(move |&factor| Job::ViewerMesh(of, factor)).collect::<Vec<_>>()
+            }));
+        }
+        jobs.push(Job::Report);
+        Ok(jobs)
+    }
+
+    fn carry_out(&self, job: &Job<'_>) -> Result<()> {
+        match job {
+            Job::Budget(purpose, of) => self.budgets(&[*purpose], std::slice::from_ref(&of.id)),
+            Job::Mesh(purpose, of) => self.meshes(&[*purpose], std::slice::from_ref(&of.id)).map(drop),
+            Job::Turntable(of) => self.with_stimuli([&of.id], |_, _| Ok(())),
+            Job::Pair(of) => self.with_stimuli([&of.left, &of.right], |pipeline, turntables| {
+                pipeline.pair(of, &turntables[0], &turntables[1]).map(drop)
+            }),
+            Job::Still(of) => {
+                let step = Step::begin("stills", 1, TICKS_A_MESH);
+                if let Err(error) = self.still(of, &step) {
+                    self.fail(&of.configuration, error)?;
+                }
+                step.end();
+                Ok(())
+            }
+            Job::ViewerMesh(of, factor) => {
+                let meshes = self.stimulus_meshes(std::slice::from_ref(&of.id))?;
+                self.levels_of(&meshes, &self.selected(std::slice::from_ref(&of.id)), &[*factor]).map(drop)
+            }
+            Job::Timings => self.short_timings().map(drop),
+            Job::Chunks(object) => {
+                self.short_timings()?;
+                self.chunk_times(Some(*object)).map(drop)
+            }
+            Job::Stored(object) => {
+                self.short_timings()?;
+                self.stored_times(Some(*object)).map(drop)
+            }
+            Job::Report => unreachable!("a report takes the whole folder: `Pipeline::report`"),
+        }
+    }
+
+    /// The timings of what did not fail before.
+    fn short_timings(&self) -> Result<Stamp> {
+        let may_fail: Vec<ConfigurationId> = self.may_fail()?.into_iter().map(|of| of.id.clone()).collect();
+        if !may_fail.is_empty() {
+            self.all_meshes(&may_fail)?;
+        }
+        self.budgets(&[Purpose::Benchmark], &[])?;
+        self.timings(&PlanLength::Short)
+    }
+
+    /// What programs and families make: the others go on without what fails of it.
+    fn may_fail(&self) -> Result<Vec<&'a Configuration>> {
+        let mut may_fail = Vec::new();
+        for of in &self.study.configurations {
+            if matches!(
+                recipe(self.study, of.id.method, Purpose::Benchmark)?,
+                Recipe::Program(_) | Recipe::Family(_)
+            ) {
+                may_fail.push(of);
+            }
+        }
+        Ok(may_fail)
+    }
+
+    /// Turntables of some configurations, in their order, unless one of them is left out.
+    fn with_stimuli<const N: usize>(
+        &self,
+        ids: [&ConfigurationId; N],
+        work: impl FnOnce(&Self, [Stamp; N]) -> Result<()>,
+    ) -> Result<()> {
+        let meshes = self.stimulus_meshes(&ids.map(Clone::clone))?;
+        let (codes, _) = self.study.code_names();
+        let step = Step::begin("turntables", N, N * self.study.file.turntable.frames as usize);
+        let mut stamps = Vec::new();
+        for id in ids {
+            let Some(configuration) = self.selected(std::slice::from_ref(id)).first().copied() else {
+                step.end();
+                return Ok(());
+            };
+            let place = self.study.configurations.iter().position(|of| of == configuration);
+            let code = &codes[place.context("one of the study's own")?];
+            stamps.push(self.turntable(configuration, code, &meshes, &step)?);
+            step.count(true);
+        }
+        step.end();
+        let Ok(stamps) = stamps.try_into() else { unreachable!("one each") };
+        work(self, stamps)
+    }
+
+    /// The folder's files that a job leaves.
+    fn outputs(&self, job: &Job<'_>) -> Vec<String> {
+        let (codes, _) = self.study.code_names();
+        match job {
+            Job::Budget(purpose, of) => vec![format!("budgets/{}/{}.json", purpose_name(*purpose), of.id)],
+            Job::Mesh(purpose, of) => {
+                let path = format!("meshes/{}/{}", purpose_name(*purpose), of.id);
+                let endings: &[&str] =
+                    if *purpose == Purpose::Indexed { &["json"] } else { &["ply", "json"] };
+                endings.iter().map(|ending| format!("{path}.{ending}")).collect()
+            }
+            Job::Turntable(of) => {
+                let place = self.study.configurations.iter().position(|other| other == *of);
+                let code = place.map_or("", |place| &codes[place]);
+                vec![format!("stimuli/turntables/{code}.gif"), MadeWith::file(&of.id)]
+            }
+            Job::Pair(of) => vec![format!("stimuli/pairs/{}.gif", of.code)],
+            Job::Still(of) => ["png", "svg"].map(|ending| format!("figures/{}.{ending}", of.id)).to_vec(),
+            Job::ViewerMesh(of, factor) => vec![format!("viewer/{}_{factor}.json", of.id)],
+            Job::Timings => vec!["bench/short/run.json".into(), "bench/short/samples.csv".into()],
+            Job::Chunks(_) | Job::Stored(_) | Job::Report => Vec::new(),
+        }
+    }
+
+    /// What a job depends on beside those that it needs. A stage may depend on what they find; this is known before.
+    fn own_inputs(&self, job: &Job<'_>) -> Result<Inputs> {
+        let file = &self.study.file;
+        let inputs = match job {
+            Job::Budget(purpose, of) => {
+                let budget = self.study.method(of.id.method).budget.context("it has one")?;
+                let other = ConfigurationId { object: of.id.object.clone(), method: budget.of };
+                let other = self.study.configurations.iter().find(|c| c.id == other);
+                let other = other.context("methods are crossed with objects")?;
+                self.extraction_inputs(of, *purpose)?
+                    .value("budget", &budget)
+                    .text("of", &self.extraction_inputs(other, *purpose)?.finish())
+                    .value("spacing", &Wanted::For(*purpose).spacing(self.study.object(of)))
+            }
+            Job::Mesh(purpose, of) => self
+                .extraction_inputs(of, *purpose)?
+                .value("spacing", &Wanted::For(*purpose).spacing(self.study.object(of))),
+            Job::Turntable(of) => Inputs::of_sources(source_digests::PICTURES)
+                .value("outputs", &self.outputs(job))
+                .value("settings", &MadeWith::of(self.study, of))
+                .value("looks", &self.study.looks()),
+            Job::Pair(of) => Inputs::of_sources(source_digests::PICTURES)
+                .text("code", &of.code)
+                .value("scale", &file.stimuli.pair_scale),
+            Job::Still(of) => {
+                let configuration = self.study.configurations.iter().find(|c| c.id == of.configuration);
+                let configuration = configuration.context("checked when the study was read")?;
+                self.extraction_inputs(configuration, Purpose::Stimulus)?
+                    .text("sources", &source_digests::PICTURES.concat())
+                    .value("still", of)
+                    .value("camera", &self.study.object(configuration).camera)
+                    .value("turntable", &file.turntable)
+                    .value("shading", &file.shading)
+            }
+            Job::ViewerMesh(of, factor) => self
+                .extraction_inputs(of, Purpose::Stimulus)?
+                .value("spacing", &Wanted::For(Purpose::Stimulus).spacing(self.study.object(of)))
+                .value("factor", factor)
+                .value("crease", &file.shading.crease_deg),
+            Job::Timings => {
+                let mut inputs =
+                    Inputs::of_sources(source_digests::TIMINGS).value("benchmark", &file.benchmark);
+                for of in &self.study.configurations {
+                    inputs = inputs.text("of", &self.extraction_inputs(of, Purpose::Benchmark)?.finish());
+                }
+                inputs.value("target", &self.study.target)
+            }
+            Job::Chunks(object) | Job::Stored(object) => {
+                let section = &file.benchmark;
+                let mut inputs = Inputs::of_sources(source_digests::TIMINGS)
+                    .value("spacing", &file.objects[*object].benchmark_spacing)
+                    .value("plan", &(section.chunks, section.short_iterations));
+                for of in self.study.configurations.iter().filter(|of| of.object == *object) {
+                    inputs = inputs.text("of", &self.extraction_inputs(of, Purpose::Benchmark)?.finish());
+                }
+                inputs
+            }
+            Job::Report => study_inputs(self.study)?,
+        };
+        Ok(inputs.text("id", &job.id(self.study)))
+    }
+
+    /// Seconds and bytes that a job is expected to take.
+    fn cost(&self, job: &Job<'a>, trials: &mut Trials<'a>) -> Result<(Option<f64>, Option<u64>)> {
+        let file = &self.study.file;
+        let pixels = f64::from(file.turntable.width) * f64::from(file.turntable.height);
+        let drawn = pixels * f64::from(file.turntable.frames) * PIXEL_S;
+        let light = |seconds: f64| (Some(seconds), Some(PROCESS_BYTES as u64));
+        Ok(match job {
+            Job::Budget(purpose, of) => {
+                let spacing = Wanted::For(*purpose).spacing(self.study.object(of));
+                // About as many steps as bisection takes.
+                self.mesh_cost(of, *purpose, spacing, [8.0, 0.0], trials)?
+            }
+            Job::Mesh(purpose, of) => {
+                let spacing = Wanted::For(*purpose).spacing(self.study.object(of));
+                self.mesh_cost(of, *purpose, spacing, [1.0, 1.0], trials)?
+            }
+            Job::ViewerMesh(of, factor) => {
+                let spacing = factor * Wanted::For(Purpose::Stimulus).spacing(self.study.object(of));
+                self.mesh_cost(of, Purpose::Stimulus, spacing, [1.0, 1.0], trials)?
+            }
+            Job::Still(of) => {
+                let configuration = self.study.configurations.iter().find(|c| c.id == of.configuration);
+                let configuration = configuration.context("checked when the study was read")?;
+                self.mesh_cost(configuration, Purpose::Stimulus, of.spacing, [1.0, 1.0], trials)?
+            }
+            Job::Turntable(_) | Job::Pair(_) => light(drawn),
+            Job::Timings => {
+                let section = &file.benchmark;
+                let times = f64::from(section.warmup + section.short_iterations + u32::from(section.memory));
+                self.times_cost(&|_| true, times, trials)?
+            }
+            Job::Chunks(object) | Job::Stored(object) => {
+                // Chunks share less than a whole does; edits come after them.
+                let times = 3.0 * f64::from(file.benchmark.short_iterations);
+                self.times_cost(&|of| of.object == *object, times, trials)?
+            }
+            Job::Report => light(PAGES_S * self.study.configurations.len() as f64),
+        })
+    }
+
+    /// Of a mesh that is extracted and measured so often.
+    fn mesh_cost(
+        &self,
+        of: &'a Configuration,
+        purpose: Purpose,
+        spacing: f64,
+        [extracted, measured]: [f64; 2],
+        trials: &mut Trials<'a>,
+    ) -> Result<(Option<f64>, Option<u64>)> {
+        let Some(cost) = trials.cost(of, purpose, spacing)? else { return Ok((None, None)) };
+        let Recipe::Extractor(method) = recipe(self.study, of.id.method, purpose)? else {
+            return Ok((None, None));
+        };
+        let volume: Option<OfVolume> = fields::volume(self.study, of.object)?;
+        let grid = prepare::grid(self.study.object(of), spacing);
+        let needs = Needs::of(volume).with(&method, &grid, &Execution { threads: 1 })?.total() as f64;
+        let bytes = PROCESS_BYTES + needs + MESHES_HELD * cost.mesh_bytes;
+        Ok((Some(extracted * cost.extracting_s + measured * cost.measuring_s), Some(bytes as u64)))
+    }
+
+    /// Of some configurations that are extracted so often; those that cannot be tried are not in it.
+    fn times_cost(
+        &self,
+        which: &dyn Fn(&Configuration) -> bool,
+        times: f64,
+        trials: &mut Trials<'a>,
+    ) -> Result<(Option<f64>, Option<u64>)> {
+        let (mut seconds, mut bytes) = (0.0, PROCESS_BYTES as u64);
+        for of in self.study.configurations.iter().filter(|of| which(of)) {
+            let spacing = Wanted::For(Purpose::Benchmark).spacing(self.study.object(of));
+            let (s, b) = self.mesh_cost(of, Purpose::Benchmark, spacing, [times, 0.0], trials)?;
+            seconds += s.unwrap_or(0.0);
+            bytes = bytes.max(b.unwrap_or(0));
+        }
+        Ok((Some(seconds), Some(bytes)))
+    }
+}
+
+/// Where a job is among all.
+fn place(study: &Study, jobs: &[Job<'_>], id: &str) -> Result<usize> {
+    let ids: Vec<String> = jobs.iter().map(|job| job.id(study)).collect();
+    ids.iter().position(|known| known == id).with_context(|| {
+        let meant = did_you_mean(id, ids.iter().map(String::as_str));
+        format!("{id}: is no job of {}{meant}; `isostudy plan` lists them", study.path.display())
+    })
+}
+
+/// How many jobs of each kind there are, and what they are expected to take: for people.
+pub(crate) fn summary(planned: &[Planned]) -> Vec<(&'static str, usize, f64)> {
+    let mut kinds: BTreeMap<&'static str, (usize, f64)> = BTreeMap::new();
+    for job in planned {
+        let of = kinds.entry(job.kind).or_default();
+        *of = (of.0 + 1, of.1 + job.expected_s.unwrap_or(0.0));
+    }
+    kinds.into_iter().map(|(kind, (jobs, seconds))| (kind, jobs, seconds)).collect()
+}
