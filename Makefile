@@ -26,6 +26,8 @@ test-long: bunny ## run the tests that take minutes: 74,640 volumes against the 
 	@echo "random tests draw with the seed $(SEED); \`make test-long SEED=$(SEED)\` repeats them"
 	@PROPTEST_RNG_SEED=$(SEED) cargo test --release --locked --workspace --no-fail-fast -- --include-ignored || \
 	{ echo "failed with the seed $(SEED): repeat it by \`make test-long SEED=$(SEED)\`" >&2; exit 1; }
+	cargo build --release --locked --package isostudy
+	scripts/test-cluster.sh target/release/isostudy $(SEED)
 
 attacks: bunny ## attack the command: bad programs, 20,000 damaged files, a server and a study under kills, full disks and removed folders
 	cargo build --release --locked -p isostudy
