@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     responses: Option<PathBuf>,
     #[command(flatten)]
     reading: ReadingRules,
-    /// Folder for tables and figures [default: results/<study id>-answers, or results/<file name>-answers]
+    /// Folder for tables and figures [default: results/<study id>-answers, or results/<file name>-answers]; with --part, the file to write
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
