@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     reading: ReadingRules,
     /// Folder for tables and figures [default: results/<study id>-answers, or results/<file name>-answers]; with --part, the file to write
-    #[arg(long, short, value_name = "DIR")]
+    #[arg(long, short, value_name = "PATH")]
     out: Option<PathBuf>,
     #[command(flatten)]
     self_test: SelfTest,

@@ -4,7 +4,7 @@
 
 use crate::source_digests::SIMULATIONS;
 use crate::store::{Inputs, sha256, write_whole};
-use crate::terminal::{grouped, say};
+use crate::terminal::grouped;
 use crate::{input, store};
 use anyhow::{Context, Result, bail, ensure};
 use isostudy_design::Study;
@@ -100,7 +100,7 @@ impl Simulation<'_> {
         self.study.map(|study| study.sha256.as_str())
     }
 
-    /// Writes what a part counted, and says so. `arguments` is all that the simulated studies depend on, as a map.
+    /// Writes what a part counted, and returns a line that says so. `arguments` is all that the simulated studies depend on, as a map.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -110,7 +110,7 @@ impl Simulation<'_> {
         arguments: &impl Serialize,
         part: Part,
         series: &[Series],
-    ) -> Result<()> {
+    ) -> Result<String> {
         let contents = Contents {
             command: self.command.into(),
             version: env!("CARGO_PKG_VERSION").into(),
@@ -126,7 +126,7 @@ impl Simulation<'_> {
         json.push(b'\n');
         write_whole(path, &json)?;
         let studies = grouped(series.iter().map(|of| of.studies.end - of.studies.start).sum());
-        say(&format!("{}: {}, {studies} simulated studies", path.display(), named(part)))
+        Ok(format!("{}: {}, {studies} simulated studies", path.display(), named(part)))
     }
 
     /// Reads parts of this simulation, in any order.
@@ -262,7 +262,11 @@ impl Parts {
                     more => format!(", and {more} more"),
                 };
                 let of = self.parts[0].0.of();
-                bail!("{}: is one of {of} parts. These are missing: {}{more}", path(0), named.join(", "))
+                bail!(
+                    "{}: is one of {of} parts. These parts are missing: {}{more}",
+                    path(0),
+                    named.join(", ")
+                )
             }
             Err(other) => bail!("{}: {other:?}", path(0)),
         }

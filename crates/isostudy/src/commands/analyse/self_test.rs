@@ -73,7 +73,7 @@ pub(super) fn run(settings: &SelfTest, out: Option<&Path>) -> Result<Outcome> {
     }
     let of = Simulated { studies: settings.studies, seed: settings.seed };
     if let (Some(part), Some(out)) = (settings.part, out) {
-        SIMULATION.write(out, &of, part, &simulated(of.studies, of.seed, part))?;
+        say(&SIMULATION.write(out, &of, part, &simulated(of.studies, of.seed, part))?)?;
         return Ok(Outcome::Done);
     }
     if settings.merge.is_empty() {

@@ -65,7 +65,7 @@ pub(crate) struct Arguments {
     )]
     merge: Vec<PathBuf>,
     /// Folder for tables and figure [default: results/<study id>-power]; with --part, the file to write
-    #[arg(long, short, value_name = "DIR")]
+    #[arg(long, short, value_name = "PATH")]
     out: Option<PathBuf>,
 }
 
@@ -286,7 +286,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         let assumptions = assumptions(arguments, &study, planned)?;
         let series = series(&study, &assumptions, arguments.part.unwrap_or(Part::WHOLE))?;
         if let (Some(part), Some(out)) = (arguments.part, &arguments.out) {
-            simulation.write(out, &Simulated::from(assumptions), part, &series)?;
+            say(&simulation.write(out, &Simulated::from(assumptions), part, &series)?)?;
             return Ok(Outcome::Done);
         }
         (assumptions, series)
