@@ -26,6 +26,7 @@ mod memory;
 mod messages;
 mod named;
 mod page;
+mod parts;
 mod scattered;
 mod serve;
 mod server;

@@ -6,6 +6,7 @@ use crate::command::{Folder, Run};
 use crate::distance;
 use crate::gate::{Pair, planted, quiet, slower};
 use serde_json::{Value, json};
+use sha2::Digest;
 use std::path::Path;
 
 /// What a run said, under what it was.
@@ -79,7 +80,7 @@ const STUDY: [(&str, &str); 18] = [
 ];
 
 /// Files and flags that somebody may give who is new to it.
-const GIVEN: [&[&str]; 20] = [
+const GIVEN: [&[&str]; 22] = [
     &["validate", "nothing.toml"],
     &["validate", "t"],
     &["validate", "wrong.csv"],
@@ -177,7 +178,60 @@ const GIVEN: [&[&str]; 20] = [
     &["deidentify", "t/study.toml", "-o", "x"],
     &["design", "power", "t/study.toml", "--shares", "69"],
     &["design", "power", "t/study.toml", "--side-bias", "left"],
+    &["design", "power", "t/study.toml", "--part", "4/3", "-o", "p.json"],
+    &["design", "power", "t/study.toml", "--part", "1/3"],
 ];
+
+/// The program's; the golden file has the first one.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Parts of a simulation, and files that are none, merged with the first of two.
+fn parts() -> String {
+    let folder = Folder::of("design");
+    folder.isostudy().args(["new", "t"]).output().unwrap();
+    let part = |part: &str, seed: &str, out: &str| {
+        let few = ["--studies", "100", "--participants", "6", "--shares", "0.7"];
+        let own = ["power", "t/study.toml", "--part", part, "--seed", seed, "-o", out];
+        let Run { code, stdout, stderr } = folder.succeed(&[&own[..], &few].concat());
+        assert!(stderr.contains("spread between people"), "{stderr}");
+        // The rest has a time.
+        section(&own.join(" "), Run { code, stdout, stderr: String::new() })
+    };
+    let mut said = part("1/2", "1", "1.json");
+    part("2/2", "2", "seed.json");
+    part("2/3", "1", "cut.json");
+    folder.write("changed.json", folder.read("1.json").replacen("\"seed\":1", "\"seed\":7", 1));
+    folder.write("end.json", &folder.read("1.json")[..100]);
+    folder.write("newer.json", "{\"schema\":2}");
+    folder.write("version.json", {
+        let text = folder.read("1.json");
+        let place = text.find("\"contents\":").unwrap() + "\"contents\":".len();
+        let contents = text[place..].trim_end().strip_suffix('}').unwrap().replacen(VERSION, "0.0.9", 1);
+        let digest: String = sha2::Sha256::digest(&contents).iter().map(|b| format!("{b:02x}")).collect();
+        format!("{{\"schema\":1,\"sha256\":\"{digest}\",\"contents\":{contents}}}")
+    });
+    std::fs::copy(folder.path("1.json"), folder.path("copy.json")).unwrap();
+    for more in [
+        "",
+        "1.json",
+        "copy.json",
+        "seed.json",
+        "cut.json",
+        "changed.json",
+        "end.json",
+        "newer.json",
+        "version.json",
+    ] {
+        let mut words = vec!["power", "t/study.toml", "--merge", "1.json"];
+        words.extend(Some(more).filter(|more| !more.is_empty()));
+        said += &section(&words.join(" "), folder.run(&words)).replace(VERSION, "0.1.0");
+    }
+    folder.write("t/study.toml", folder.read("t/study.toml") + "\n");
+    said + &section(
+        "the same, with another study file",
+        folder.run(&["power", "t/study.toml", "--merge", "1.json"]),
+    )
+}
 
 fn refusals() -> String {
     let folder = Folder::new();
@@ -203,7 +257,7 @@ fn messages_are_worded_as_in_their_file() {
     let meshes = distance::meshes();
     let refused = distance::REFUSED
         .map(|(arguments, _)| section(&format!("distance {}", arguments.join(" ")), meshes.run(arguments)));
-    let said = comparisons() + &refused.concat() + &refusals();
+    let said = comparisons() + &refused.concat() + &refusals() + &parts();
     let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/golden/messages.txt");
     if std::env::var_os("ISOSTUDY_BLESS").is_some_and(|value| value == "1") {
         std::fs::write(&golden, &said).unwrap();

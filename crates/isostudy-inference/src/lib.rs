@@ -38,6 +38,7 @@ pub mod scale;
 pub mod screened;
 pub mod screens;
 pub mod self_test;
+pub mod series;
 pub mod sides;
 pub mod tally;
 pub mod tipping;

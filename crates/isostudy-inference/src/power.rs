@@ -18,6 +18,7 @@ mod tests;
 
 pub use spread::{Spread, spread_between_people};
 
+use crate::series::{Part, Series};
 use isostudy_design::Level;
 use isostudy_design::Study;
 use isostudy_design::contrast::{Contrast, Family, Over, PRIMARY, contrasts, families};
@@ -25,7 +26,6 @@ use isostudy_design::forms::{Questionnaire, Role};
 use isostudy_statistics::simulation::{davidson, draw, normal, stream};
 use isostudy_statistics::{Outcome, SignFlip, benjamini_hochberg, holm, sign_flip_of_counts};
 use rand::Rng;
-use rayon::prelude::*;
 use scores::weights;
 use std::collections::BTreeMap;
 
@@ -150,40 +150,55 @@ struct Setting {
 /// `done` is called with one after each simulated study, from any thread.
 ///
 /// # Panics
-/// If there are no participants to simulate, or their numbers do not ascend.
+/// As [`simulated`].
 pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync)) -> Option<Vec<Power>> {
+    powers(study, assumptions, &simulated(study, assumptions, Part::WHOLE, done)?)
+}
+
+/// Simulates a part of the studies: a series for each share and bonus, which counts rejections without and with correction, by target
+/// and number of participants. `None` and `done` as in [`power`].
+///
+/// # Panics
+/// If there are no participants to simulate, or their numbers do not ascend.
+pub fn simulated(
+    study: &Study,
+    assumptions: &Assumptions,
+    part: Part,
+    done: &(dyn Fn() + Sync),
+) -> Option<Vec<Series>> {
     let numbers = &assumptions.participants;
     assert!(numbers.is_sorted() && numbers.first().is_some_and(|&least| least > 0));
     let setting = Setting::of(study, numbers.last().copied().unwrap_or(0))?;
-    let places = numbers.len() * setting.targets.len();
+    let simulated = cases(assumptions).zip(setting.blank(assumptions)).map(|(case, blank)| {
+        blank.count(part, |number| {
+            let mut stream = stream(assumptions.seed, case.first + number);
+            let rejected = setting.study([case.share, case.side_bias], assumptions, &mut stream);
+            done();
+            rejected.concat()
+        })
+    });
+    Some(simulated.collect())
+}
+
+/// The series of [`simulated`] with nothing counted; `None` as there.
+pub fn blank(study: &Study, assumptions: &Assumptions) -> Option<Vec<Series>> {
+    Some(Setting::of(study, 0)?.blank(assumptions))
+}
+
+/// Power of whole series as [`simulated`] makes them with the same study and assumptions; `None` as there.
+///
+/// # Panics
+/// If they are others.
+pub fn powers(study: &Study, assumptions: &Assumptions, series: &[Series]) -> Option<Vec<Power>> {
+    let setting = Setting::of(study, 0)?;
+    let numbers = &assumptions.participants;
+    let share_of = |count: u64| count as f64 / assumptions.studies as f64;
     let mut all = Vec::new();
-    let shares = assumptions.shares.iter().enumerate();
-    for ((place, &share), &side_bias) in
-        shares.flat_map(|share| assumptions.side_biases.iter().map(move |side| (share, side)))
-    {
-        // The same people for every bonus of a side: what differs between them is the bonus.
-        let first = place as u64 * assumptions.studies;
-        let add = |mut a: Vec<[u64; 2]>, b: Vec<[u64; 2]>| {
-            a.iter_mut().zip(b).for_each(|(a, b)| (0..2).for_each(|i| a[i] += b[i]));
-            a
-        };
-        let rejected = (0..assumptions.studies)
-            .into_par_iter()
-            .map(|number| {
-                let found = setting.study(
-                    [share, side_bias],
-                    assumptions,
-                    &mut stream(assumptions.seed, first + number),
-                );
-                done();
-                found
-            })
-            .reduce(|| vec![[0; 2]; places], add);
-        let share_of = |count: u64| count as f64 / assumptions.studies as f64;
-        let told =
-            setting.targets.iter().zip(rejected.chunks(numbers.len())).filter(|(target, _)| target.told);
+    for (case, series) in cases(assumptions).zip(series) {
+        let rejected = series.counts.chunks(2 * numbers.len());
+        let told = setting.targets.iter().zip(rejected).filter(|(target, _)| target.told);
         for (target, rejected) in told {
-            for (&participants, &[uncorrected, corrected]) in numbers.iter().zip(rejected) {
+            for (&participants, rejected) in numbers.iter().zip(rejected.chunks(2)) {
                 all.push(Power {
                     family: target.family.clone(),
                     over: target.over.clone(),
@@ -191,10 +206,10 @@ pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync))
                     scope: target.scope.clone(),
                     questions: target.questions,
                     participants,
-                    share,
-                    side_bias,
-                    corrected: share_of(corrected),
-                    uncorrected: share_of(uncorrected),
+                    share: case.share,
+                    side_bias: case.side_bias,
+                    corrected: share_of(rejected[1]),
+                    uncorrected: share_of(rejected[0]),
                     level: setting.level,
                     studies: assumptions.studies,
                 });
@@ -202,6 +217,23 @@ pub fn power(study: &Study, assumptions: &Assumptions, done: &(dyn Fn() + Sync))
         }
     }
     Some(all)
+}
+
+/// What is assumed of one series of studies.
+struct Case {
+    share: f64,
+    side_bias: f64,
+    /// Number of its first study's stream of random numbers.
+    first: u64,
+}
+
+/// Each share with each bonus of a side.
+fn cases(assumptions: &Assumptions) -> impl Iterator<Item = Case> {
+    assumptions.shares.iter().enumerate().flat_map(|(place, &share)| {
+        // The same people for every bonus of a side: what differs between them is the bonus.
+        let first = place as u64 * assumptions.studies;
+        assumptions.side_biases.iter().map(move |&side_bias| Case { share, side_bias, first })
+    })
 }
 
 /// What the contrasts of a family are over, in words.
@@ -297,6 +329,13 @@ impl Setting {
             levels: levels.len(),
             objects: study.file.objects.len(),
         })
+    }
+
+    /// What [`simulated`] counts, with nothing counted.
+    fn blank(&self, assumptions: &Assumptions) -> Vec<Series> {
+        let things = 2 * assumptions.participants.len() * self.targets.len();
+        let name = |case: &Case| format!("share {}, liking for the left side {}", case.share, case.side_bias);
+        cases(assumptions).map(|case| Series::blank(name(&case), assumptions.studies, things)).collect()
     }
 
     /// One simulated study: by target and number of participants, whether p and adjusted p reject.

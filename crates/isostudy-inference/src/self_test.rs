@@ -2,18 +2,19 @@
 //!
 //! [`probes`] plants one defect at a time and counts which [probes](crate::audit) speak up; [`rates`] counts how often tests
 //! reject what is true and how often intervals cover it. Study s draws from its own stream of the seed, and only whole
-//! numbers are added up: the same seed gives the same counts on any number of threads.
+//! numbers are added up: the same seed gives the same counts on any number of threads, and in any number of [parts](Part).
 
 mod defects;
 mod rates;
 mod studies;
 
 pub use defects::{DESCRIPTION as PROBES_DESCRIPTION, Defect, Planted, TOO_FEW, planted};
-pub use rates::{DESCRIPTION as RATES_DESCRIPTION, Rate, rates};
+pub use rates::{DESCRIPTION as RATES_DESCRIPTION, Rate};
 pub use studies::Design;
 
 use crate::audit::{Finding, Probe, Report};
-use rayon::prelude::*;
+use crate::series::{Part, Series};
+use rates::rates;
 
 /// How often a probe has to speak up on its own defect.
 pub const OWN_AT_LEAST: f64 = 0.95;
@@ -36,6 +37,13 @@ pub struct Hits {
 }
 
 impl Hits {
+    /// Counted as [`seen`] has it.
+    fn of(design: Design, defect: Defect, series: &Series) -> Self {
+        let counts = |begin: usize| std::array::from_fn(|probe| series.counts[begin + probe]);
+        let studies = series.studies.end - series.studies.start;
+        Self { design, defect, found: counts(0), unanswerable: counts(Probe::ALL.len()), studies }
+    }
+
     /// Share of studies in which a probe spoke up.
     pub fn share(&self, probe: Probe) -> f64 {
         self.found[place(probe)] as f64 / self.studies as f64
@@ -81,19 +89,66 @@ fn probe_limits(studies: u64) -> (f64, f64) {
     (own.max(0.0), (OTHERS_AT_MOST + allowance(OTHERS_AT_MOST, studies)).min(1.0))
 }
 
-/// Plants every defect in every design, each in a tenth of so many studies.
-pub fn probes(studies: u64, seed: u64) -> Vec<Hits> {
-    let rows = Design::ALL.into_iter().flat_map(|design| Defect::ALL.map(|defect| (design, defect)));
-    rows.filter(|&(design, defect)| defect.is_planted(design))
-        .map(|(design, defect)| probes_of(design, defect, studies.div_ceil(10), seed))
-        .collect()
+/// Simulates a part of so many studies: all that [`Outcomes`] are made of.
+pub fn simulated(studies: u64, seed: u64, part: Part) -> Vec<Series> {
+    let mut all = probes(studies, seed, part);
+    all.extend(rates(studies, seed, part));
+    all
 }
 
-fn probes_of(design: Design, defect: Defect, studies: u64, seed: u64) -> Hits {
-    let one = |study: u64| seen(&planted(defect, design, seed, study).audit());
-    let add = |a: [[u64; 6]; 2], b: [[u64; 6]; 2]| [0, 1].map(|k| std::array::from_fn(|i| a[k][i] + b[k][i]));
-    let [found, unanswerable] = (0..studies).into_par_iter().map(one).reduce(|| [[0; 6]; 2], add);
-    Hits { design, defect, found, unanswerable, studies }
+/// The series of [`simulated`] with nothing counted.
+pub fn blank(studies: u64) -> Vec<Series> {
+    let probes = rows().map(|(design, defect)| blank_probes(design, defect, studies.div_ceil(10)));
+    probes.chain(rates::blank(studies)).collect()
+}
+
+/// How probes, tests and intervals did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcomes {
+    /// A row for every defect in every design.
+    pub probes: Vec<Hits>,
+    /// A row for every test and interval.
+    pub rates: Vec<Rate>,
+}
+
+impl Outcomes {
+    /// Of series as [`simulated`] makes them.
+    ///
+    /// # Panics
+    /// If they are others.
+    pub fn of(series: &[Series]) -> Self {
+        let (probes, rates) = series.split_at(rows().count());
+        Self {
+            probes: rows().zip(probes).map(|((design, defect), of)| Hits::of(design, defect, of)).collect(),
+            rates: rates::of(rates),
+        }
+    }
+
+    /// Whether every probe, test and interval did as it has to.
+    pub fn sound(&self) -> bool {
+        let probes = self.probes.iter().all(|of| Probe::ALL.iter().all(|&probe| of.sound(probe)));
+        probes && self.rates.iter().all(Rate::sound)
+    }
+}
+
+/// Every design with every defect that is planted in it.
+fn rows() -> impl Iterator<Item = (Design, Defect)> {
+    let all = Design::ALL.into_iter().flat_map(|design| Defect::ALL.map(|defect| (design, defect)));
+    all.filter(|&(design, defect)| defect.is_planted(design))
+}
+
+/// Plants every defect in every design, each in a tenth of so many studies.
+fn probes(studies: u64, seed: u64, part: Part) -> Vec<Series> {
+    rows().map(|(design, defect)| probes_of(design, defect, [studies.div_ceil(10), seed], part)).collect()
+}
+
+fn probes_of(design: Design, defect: Defect, [studies, seed]: [u64; 2], part: Part) -> Series {
+    let one = |study: u64| seen(&planted(defect, design, seed, study).audit()).concat();
+    blank_probes(design, defect, studies).count(part, one)
+}
+
+fn blank_probes(design: Design, defect: Defect, studies: u64) -> Series {
+    Series::blank(format!("probes: {}: {}", design.label(), defect.label()), studies, 2 * Probe::ALL.len())
 }
 
 /// By probe, whether it spoke up, and whether it could not tell.

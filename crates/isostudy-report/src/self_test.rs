@@ -2,16 +2,13 @@
 
 use isostudy_inference::audit::Probe;
 use isostudy_inference::self_test::{
-    FULL, Hits, OTHERS_AT_MOST, OWN_AT_LEAST, PROBES_DESCRIPTION, RATES_DESCRIPTION, Rate, TOO_FEW, probes,
-    rates,
+    FULL, Hits, OTHERS_AT_MOST, OWN_AT_LEAST, Outcomes, PROBES_DESCRIPTION, RATES_DESCRIPTION, Rate, TOO_FEW,
 };
 use isostudy_table::{Cell, Columns, Table};
 
-/// Everything, as two tables, `self_test_probes` and `self_test_rates`, and whether all is as it has to be.
-pub fn self_test_tables(studies: u64, seed: u64) -> ([Table; 2], bool) {
-    let (hits, rates) = (probes(studies, seed), rates(studies, seed));
-    let sound = hits.iter().all(|h| Probe::ALL.iter().all(|&p| h.sound(p))) && rates.iter().all(Rate::sound);
-    ([probe_table(&hits, seed), rate_table(&rates, seed)], sound)
+/// Everything, as two tables, `self_test_probes` and `self_test_rates`; it was simulated with this seed.
+pub fn self_test_tables(outcomes: &Outcomes, seed: u64) -> [Table; 2] {
+    [probe_table(&outcomes.probes, seed), rate_table(&outcomes.rates, seed)]
 }
 
 fn probe_table(hits: &[Hits], seed: u64) -> Table {
@@ -63,13 +60,15 @@ fn verdict(sound: bool) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isostudy_inference::self_test::{Defect, Design};
+    use isostudy_inference::self_test::{Defect, Design, simulated};
+    use isostudy_inference::series::Part;
 
     #[test]
     fn the_same_on_any_number_of_threads() {
         let run = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let ([probes, rates], _) = pool.install(|| self_test_tables(12, 4));
+            let series = pool.install(|| simulated(12, 4, Part::WHOLE));
+            let [probes, rates] = self_test_tables(&Outcomes::of(&series), 4);
             (probes.to_csv(), rates.to_csv())
         };
         let one = run(1);

@@ -29,6 +29,7 @@ mod faults;
 mod given_answers;
 mod named;
 mod object_of_study;
+mod parts;
 mod reading_rules;
 mod source_arguments;
 mod study_forms;

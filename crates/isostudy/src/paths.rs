@@ -21,9 +21,10 @@ const MEMORY_LIMIT: u64 = 300 << 20;
 const WRITTEN: [(&str, &str); 5] =
     [("", "out"), ("", "picture"), ("", "figure"), ("new", "folder"), ("serve", "answers")];
 /// What else has to be said for an argument to be taken.
-const BESIDE: [(&str, &str, &[&str]); 22] = [
+const BESIDE: [(&str, &str, &[&str]); 23] = [
     ("analyse", "responses", &["my/study.toml"]),
     ("analyse", "mapping", &["answers.csv"]),
+    ("analyse", "merge", &["--self-test"]),
     ("distance", "a", &["ball.obj"]),
     ("distance", "study", &["--object", "torus"]),
     ("turntable", "study", &["--object", "torus", "--colour", "error", "-o", "x.gif"]),
@@ -81,7 +82,7 @@ fn ending(id: &str) -> &'static str {
         "volume" | "labels" => "nrrd",
         "grid" => "vtu",
         "mesh" | "a" | "b" | "points" | "soup" => "ply",
-        "tables" | "spacings" | "run" => "json",
+        "tables" | "spacings" | "run" | "merge" => "json",
         "responses" | "downloads" | "table" | "spread_of" => "csv",
         _ => "toml",
     }

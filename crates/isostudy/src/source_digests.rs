@@ -39,6 +39,8 @@ pub(crate) const TIMINGS: &[&str] =
 /// What makes tables, figures and the report.
 pub(crate) const TABLES: &[&str] =
     &[DESIGN, RESPONSES, STATISTICS, TABLE, TIMING, INFERENCE, REPORT, PAPER, CLI, PAGE];
+/// What simulates answers, and counts how they come out.
+pub(crate) const SIMULATIONS: &[&str] = &[DESIGN, RESPONSES, STATISTICS, INFERENCE];
 /// What makes the key.
 pub(crate) const KEYS: &[&str] = &[DESIGN, CLI];
 /// What makes the bundle for participants.

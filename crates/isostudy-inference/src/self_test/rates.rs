@@ -1,6 +1,7 @@
 //! How often tests reject what is true, and intervals cover it.
 
 use super::allowance;
+use crate::series::{Part, Series};
 use isostudy_statistics::bootstrap::Resampling;
 use isostudy_statistics::interval::Interval;
 use isostudy_statistics::simulation::{Plan, Population, simulate, stream};
@@ -8,7 +9,6 @@ use isostudy_statistics::{
     MARGIN, Model, Pairs, Participants, ScoreTest, ShownBallot, clustered_covariance, fit, friedman, holm,
     sign_test,
 };
-use rayon::prelude::*;
 
 /// How the studies are, for people.
 /// What the studies are whose tests and intervals are counted.
@@ -81,34 +81,66 @@ impl Rate {
     }
 }
 
-/// Counts everything over so many studies.
-pub fn rates(studies: u64, seed: u64) -> Vec<Rate> {
-    let mut all = Vec::new();
-    for (by, name) in [(0.0, "no preference"), (0.8, "0.8 logits apart")] {
-        all.extend(one_contrast(studies, seed, by, name));
-    }
-    all.extend(at_the_margin(studies, seed));
-    for (worths, name) in [([0.0; 3], "no preference"), ([0.0, 0.5, 1.0], "items 0, 0.5, 1 logits")] {
-        all.extend(three_items(studies, seed, worths, name));
-    }
-    all
+/// Studies that have one truth, and what may happen in each.
+struct Case {
+    /// What is compared.
+    compared: &'static str,
+    truth: &'static str,
+    /// What happened in a study, by its number; every study is asked the same.
+    events: Box<dyn Fn(u64) -> Vec<Event> + Send + Sync>,
 }
 
 /// One thing that may happen in a study: what it is called, how it counts, and whether it did; `None` if this study was not
 /// asked.
 type Event = (&'static str, Counted, Option<bool>);
 
-/// Adds up what happened in every study.
-fn count(studies: u64, truth: &str, events: impl Fn(u64) -> Vec<Event> + Send + Sync) -> Vec<Rate> {
-    let all: Vec<Vec<Event>> = (0..studies).into_par_iter().map(events).collect();
-    let kinds = all.first().map_or(0, Vec::len);
-    let rate = |i: usize| {
-        let (method, counted, _) = all[0][i];
-        let seen = || all.iter().filter_map(|of| of[i].2);
-        let (studies, hits) = (seen().count() as u64, seen().filter(|&hit| hit).count() as u64);
-        Rate { method, truth: truth.into(), studies, hits, counted }
-    };
-    (0..kinds).map(rate).collect()
+impl Case {
+    /// Two numbers for each event: studies that were asked, and those where it happened.
+    fn blank(&self, studies: u64) -> Series {
+        let things = 2 * (self.events)(0).len();
+        Series::blank(format!("rates: {}: {}", self.compared, self.truth), studies, things)
+    }
+
+    fn count(&self, studies: u64, part: Part) -> Series {
+        let happened = |(_, _, of): Event| [of.is_some(), of == Some(true)].map(u64::from);
+        self.blank(studies).count(part, |study| (self.events)(study).into_iter().flat_map(happened).collect())
+    }
+
+    fn rates(&self, series: &Series) -> Vec<Rate> {
+        let rate = |((method, counted, _), counts): (Event, &[u64])| Rate {
+            method,
+            truth: self.truth.into(),
+            studies: counts[0],
+            hits: counts[1],
+            counted,
+        };
+        (self.events)(0).into_iter().zip(series.counts.chunks(2)).map(rate).collect()
+    }
+}
+
+fn cases(seed: u64) -> [Case; 5] {
+    [
+        one_contrast(seed, 0.0, "no preference"),
+        one_contrast(seed, 0.8, "0.8 logits apart"),
+        at_the_margin(seed),
+        three_items(seed, [0.0; 3], "no preference"),
+        three_items(seed, [0.0, 0.5, 1.0], "items 0, 0.5, 1 logits"),
+    ]
+}
+
+/// Counts everything over a part of so many studies.
+pub(super) fn rates(studies: u64, seed: u64, part: Part) -> Vec<Series> {
+    cases(seed).iter().map(|case| case.count(studies, part)).collect()
+}
+
+/// The same with nothing counted.
+pub(super) fn blank(studies: u64) -> Vec<Series> {
+    cases(0).iter().map(|case| case.blank(studies)).collect()
+}
+
+/// The rates of what [`rates`] counted.
+pub(super) fn of(series: &[Series]) -> Vec<Rate> {
+    cases(0).iter().zip(series).flat_map(|(case, series)| case.rates(series)).collect()
 }
 
 fn pair(by: f64) -> Population {
@@ -123,18 +155,18 @@ fn covers(interval: Interval, truth: f64) -> bool {
     interval.low <= truth && truth <= interval.high
 }
 
-fn one_contrast(studies: u64, seed: u64, by: f64, name: &str) -> Vec<Rate> {
+fn one_contrast(seed: u64, by: f64, truth: &'static str) -> Case {
     use Counted::{Coverage, Rejections, RejectionsForComparison};
     let (plan, population) = (Plan::round_robin(2, 9), pair(by));
     let [first, _, second] = population.chances((0, 1), 0);
-    let truth = first - second;
-    count(studies, name, |study| {
+    let score = first - second;
+    let events = move |study: u64| {
         let ballots = simulate(&plan, &population, PEOPLE, &mut stream(seed, study));
         let test = contrast(&ballots);
         let resampling = Resampling { resamples: RESAMPLES, seed: study };
-        let studentised = Some(test.studentised(resampling).is_some_and(|of| covers(of.interval, truth)));
+        let studentised = Some(test.studentised(resampling).is_some_and(|of| covers(of.interval, score)));
         let mut events = vec![
-            ("mean score, t interval", Coverage, test.interval.map(|i| covers(i, truth))),
+            ("mean score, t interval", Coverage, test.interval.map(|i| covers(i, score))),
             ("mean score, studentised bootstrap", Coverage, studentised),
         ];
         if by == 0.0 {
@@ -156,11 +188,12 @@ fn one_contrast(studies: u64, seed: u64, by: f64, name: &str) -> Vec<Rate> {
             ]);
         }
         events
-    })
+    };
+    Case { compared: "one contrast", truth, events: Box::new(events) }
 }
 
 /// Two one-sided tests where the mean score is the margin itself, which is not within it.
-fn at_the_margin(studies: u64, seed: u64) -> Vec<Rate> {
+fn at_the_margin(seed: u64) -> Case {
     let score = |by: f64| {
         let [first, _, second] = pair(by).chances((0, 1), 0);
         first - second
@@ -171,31 +204,32 @@ fn at_the_margin(studies: u64, seed: u64) -> Vec<Rate> {
         if score(middle) < MARGIN { low = middle } else { high = middle }
     }
     let (plan, population) = (Plan::round_robin(2, 9), pair(low));
-    count(studies, "mean score at the margin, 0.2", |study| {
+    let events = move |study: u64| {
         let ballots = simulate(&plan, &population, PEOPLE, &mut stream(seed, study));
         let p = contrast(&ballots).equivalence(MARGIN).map(|test| test.p <= LEVEL);
         vec![("equivalence, two one-sided t tests", Counted::Rejections, p)]
-    })
+    };
+    Case { compared: "one contrast", truth: "mean score at the margin, 0.2", events: Box::new(events) }
 }
 
-fn three_items(studies: u64, seed: u64, worths: [f64; 3], name: &str) -> Vec<Rate> {
+fn three_items(seed: u64, worths: [f64; 3], truth: &'static str) -> Case {
     use Counted::{Coverage, CoverageForComparison, Rejections, RejectionsForComparison};
     let plan = Plan::round_robin(3, 3);
     let population = Population { worths: worths.to_vec(), ..Population::indifferent(3, SD) };
     let pairs = [(0, 1), (0, 2), (1, 2)];
     let chances = pairs.map(|(left, right)| (left, right, population.chances((left, right), 0)));
     // What Davidson's model says of everybody at once; people differ, so it is not the worths that each starts from.
-    let truth = fit(Model::Davidson, &Pairs::new(3, chances)).expect("all chances above zero").log_worths[2];
-    count(studies, name, |study| {
+    let worth = fit(Model::Davidson, &Pairs::new(3, chances)).expect("all chances above zero").log_worths[2];
+    let events = move |study: u64| {
         let ballots = simulate(&plan, &population, PEOPLE, &mut stream(seed, study));
         let participants = Participants::of(3, &ballots);
         let fitted = fit(Model::Davidson, &Pairs::of(3, &ballots)).ok().filter(|fit| !fit.penalised());
         let sandwich = fitted.as_ref().and_then(|fit| Some((fit, clustered_covariance(fit, &participants)?)));
         let t =
-            sandwich.map(|(fit, s)| covers(fit.clustered_interval(&s, participants.number(), 2, 0), truth));
+            sandwich.map(|(fit, s)| covers(fit.clustered_interval(&s, participants.number(), 2, 0), worth));
         let naive = fitted.as_ref().map(|fit| {
             let half = 1.96 * fit.standard_error(&fit.covariance, 2, 0);
-            (fit.log_worths[2] - truth).abs() <= half
+            (fit.log_worths[2] - worth).abs() <= half
         });
         let mut events = vec![
             ("Davidson worth, sandwich and t", Coverage, t),
@@ -228,5 +262,6 @@ fn three_items(studies: u64, seed: u64, worths: [f64; 3], name: &str) -> Vec<Rat
             ]);
         }
         events
-    })
+    };
+    Case { compared: "three items", truth, events: Box::new(events) }
 }

@@ -30,8 +30,8 @@ pub(crate) struct Arguments {
     responses: Option<PathBuf>,
     #[command(flatten)]
     reading: ReadingRules,
-    /// Folder for tables and figures [default: results/<study id>-answers, or results/<file name>-answers]
-    #[arg(long, short, value_name = "DIR")]
+    /// Folder for tables and figures [default: results/<study id>-answers, or results/<file name>-answers]; with --part, the file to write
+    #[arg(long, short, value_name = "PATH")]
     out: Option<PathBuf>,
     #[command(flatten)]
     self_test: SelfTest,

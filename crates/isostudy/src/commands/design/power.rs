@@ -2,6 +2,7 @@
 
 use super::forms_section;
 use crate::commands::given_answers::served;
+use crate::commands::parts::{self, Simulation};
 use crate::origin;
 use crate::outcome::Outcome;
 use crate::terminal::progress::Step;
@@ -10,18 +11,22 @@ use crate::{answer_files, input, kept_answers, store};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use isostudy_design::Study;
-use isostudy_inference::power::{Assumptions, Spread, power as simulated, spread_between_people};
+use isostudy_inference::power::{Assumptions, Spread, blank, powers, simulated, spread_between_people};
+use isostudy_inference::series::{Part, Series};
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// The spread between people that is assumed where nothing is known of it, in logits.
 const UNKNOWN: f64 = 1.0;
+/// The largest number of participants.
+const MOST_PEOPLE: u32 = 100_000;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Study file with [forms], such as configs/balanced.toml
     study: PathBuf,
     /// Numbers of participants [default: from a sixth to twice of forms.participants]
-    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_PEOPLE)))]
     participants: Vec<u32>,
     /// Shares of decided answers for the first of two properties
     #[arg(long, value_name = "SHARE,SHARE", value_delimiter = ',', value_parser = share, default_values_t = [0.6, 0.69, 0.77])]
@@ -43,19 +48,42 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NU", value_parser = deviation, default_value_t = 0.3)]
     ties: f64,
     /// Studies to simulate for each share
-    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u64).range(parts::STUDIES))]
     studies: u64,
     /// Seed of the simulated studies; the same seed gives the same numbers on any number of threads
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Folder for tables and figure [default: results/<study id>-power]
-    #[arg(long, short, value_name = "DIR")]
+    /// Simulate one part of all studies, such as 3/100 for the third of 100 parts, and write what it counted to the file --out
+    #[arg(long, requires = "out", value_name = "K/N", value_parser = parts::part)]
+    part: Option<Part>,
+    /// Simulate nothing, and read the files of all parts in any order: what is written is what one run of all studies writes
+    #[arg(
+        long,
+        value_name = "FILE",
+        num_args = 1..,
+        conflicts_with_all = ["part", "participants", "shares", "side_bias", "spread", "spread_of", "object_sd", "ties", "studies", "seed"]
+    )]
+    merge: Vec<PathBuf>,
+    /// Folder for tables and figure [default: results/<study id>-power]; with --part, the file to write
+    #[arg(long, short, value_name = "PATH")]
     out: Option<PathBuf>,
+}
+
+fn is_share(value: f64) -> bool {
+    value > 0.0 && value < 1.0
+}
+
+fn is_deviation(value: f64) -> bool {
+    (0.0..=100.0).contains(&value)
+}
+
+fn is_bias(value: f64) -> bool {
+    (-20.0..=20.0).contains(&value)
 }
 
 fn share(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if value > 0.0 && value < 1.0 {
+    if is_share(value) {
         Ok(value)
     } else {
         Err("allowed: above 0 and below 1, such as 0.69 for 69 %".into())
@@ -64,12 +92,12 @@ fn share(text: &str) -> Result<f64, String> {
 
 fn deviation(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (0.0..=100.0).contains(&value) { Ok(value) } else { Err("allowed: 0 to 100".into()) }
+    if is_deviation(value) { Ok(value) } else { Err("allowed: 0 to 100".into()) }
 }
 
 fn bias(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (-20.0..=20.0).contains(&value) { Ok(value) } else { Err("allowed: -20 to 20".into()) }
+    if is_bias(value) { Ok(value) } else { Err("allowed: -20 to 20".into()) }
 }
 
 /// In the order in which they are given, each once.
@@ -127,13 +155,78 @@ fn spread(arguments: &Arguments, study: &Study) -> Result<f64> {
     }
 }
 
-/// Prints and writes how likely the study is to find a preference.
-///
-/// # Errors
-/// If the study cannot be read or has no forms, or a file cannot be written.
-pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let study = input::study(&arguments.study)?;
-    let planned = forms_section(&study)?.participants as usize;
+/// What is assumed, as the files of parts have it: named like the arguments.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Simulated {
+    participants: Vec<usize>,
+    shares: Vec<f64>,
+    side_bias: Vec<f64>,
+    spread: f64,
+    object_sd: f64,
+    ties: f64,
+    studies: u64,
+    seed: u64,
+}
+
+impl From<Assumptions> for Simulated {
+    fn from(of: Assumptions) -> Self {
+        Self {
+            participants: of.participants,
+            shares: of.shares,
+            side_bias: of.side_biases,
+            spread: of.person_sd,
+            object_sd: of.object_sd,
+            ties: of.ties,
+            studies: of.studies,
+            seed: of.seed,
+        }
+    }
+}
+
+impl From<Simulated> for Assumptions {
+    fn from(of: Simulated) -> Self {
+        Self {
+            participants: of.participants,
+            shares: of.shares,
+            side_biases: of.side_bias,
+            person_sd: of.spread,
+            object_sd: of.object_sd,
+            ties: of.ties,
+            studies: of.studies,
+            seed: of.seed,
+        }
+    }
+}
+
+impl Simulated {
+    /// A file may say what no argument may.
+    fn check(&self) -> Result<()> {
+        let numbers = &self.participants;
+        ensure!(
+            !numbers.is_empty()
+                && numbers.is_sorted_by(|a, b| a < b)
+                && numbers.iter().all(|number| (1..=MOST_PEOPLE as usize).contains(number)),
+            "participants: allowed: numbers from 1 to {MOST_PEOPLE} that ascend"
+        );
+        let (least, most) = parts::STUDIES.into_inner();
+        ensure!(parts::STUDIES.contains(&self.studies), "studies: allowed: {least} to {most}");
+        ensure!(
+            !self.shares.is_empty() && self.shares.iter().all(|&share| is_share(share)),
+            "shares: allowed: above 0 and below 1"
+        );
+        ensure!(
+            !self.side_bias.is_empty() && self.side_bias.iter().all(|&bias| is_bias(bias)),
+            "side_bias: allowed: -20 to 20"
+        );
+        let deviations = [self.spread, self.object_sd, self.ties];
+        ensure!(deviations.into_iter().all(is_deviation), "spread, object_sd, ties: allowed: 0 to 100");
+        Ok(())
+    }
+}
+
+/// What the arguments and the study say is assumed.
+fn assumptions(arguments: &Arguments, study: &Study, planned: usize) -> Result<Assumptions> {
     let mut participants: Vec<usize> = arguments.participants.iter().map(|&n| n as usize).collect();
     if participants.is_empty() {
         // In twelfths of the plan: from a sixth to twice.
@@ -141,22 +234,67 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     }
     participants.sort_unstable();
     participants.dedup();
-    let assumptions = Assumptions {
+    Ok(Assumptions {
         participants,
         shares: distinct(&arguments.shares),
         side_biases: distinct(&arguments.side_bias),
-        person_sd: spread(arguments, &study)?,
+        person_sd: spread(arguments, study)?,
         object_sd: arguments.object_sd,
         ties: arguments.ties,
         studies: arguments.studies,
         seed: arguments.seed,
-    };
-    let studies = assumptions.shares.len() * assumptions.side_biases.len() * assumptions.studies as usize;
+    })
+}
+
+/// Simulates a part of the studies, and says how far it is.
+fn series(study: &Study, assumptions: &Assumptions, part: Part) -> Result<Vec<Series>> {
+    let cases = assumptions.shares.len() * assumptions.side_biases.len();
+    let own = part.studies(assumptions.studies);
+    let studies = cases * (own.end - own.start) as usize;
     let step = Step::begin("studies", studies, studies);
-    let found = simulated(&study, &assumptions, &|| step.tick(1)).unwrap_or_default();
+    let found = simulated(study, assumptions, part, &|| step.tick(1));
     step.count_all(true);
     step.end();
-    ensure!(!found.is_empty(), "{}: there is no comparison to simulate", study.path.display());
+    found.with_context(|| nothing(study))
+}
+
+fn nothing(study: &Study) -> String {
+    format!("{}: there is no comparison to simulate", study.path.display())
+}
+
+/// What was assumed in all parts, and what they counted.
+fn merged(
+    simulation: &Simulation<'_>,
+    study: &Study,
+    paths: &[PathBuf],
+) -> Result<(Assumptions, Vec<Series>)> {
+    let parts = simulation.read(paths)?;
+    let assumptions = parts.arguments(Simulated::check)?.into();
+    let blank = blank(study, &assumptions).with_context(|| nothing(study))?;
+    Ok((assumptions, parts.whole(blank)?))
+}
+
+/// Prints and writes how likely the study is to find a preference; or writes what a part of the simulation counted.
+///
+/// # Errors
+/// If the study cannot be read or has no forms, a part cannot be read or is none of this simulation, or a file cannot be written.
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let study = input::study(&arguments.study)?;
+    let planned = forms_section(&study)?.participants as usize;
+    let simulation = Simulation { command: "design power", study: Some(&study) };
+    let (assumptions, series) = if arguments.merge.is_empty() {
+        let assumptions = assumptions(arguments, &study, planned)?;
+        let series = series(&study, &assumptions, arguments.part.unwrap_or(Part::WHOLE))?;
+        if let (Some(part), Some(out)) = (arguments.part, &arguments.out) {
+            say(&simulation.write(out, &Simulated::from(assumptions), part, &series)?)?;
+            return Ok(Outcome::Done);
+        }
+        (assumptions, series)
+    } else {
+        merged(&simulation, &study, &arguments.merge)?
+    };
+    let found = powers(&study, &assumptions, &series).unwrap_or_default();
+    ensure!(!found.is_empty(), nothing(&study));
 
     let tables = isostudy_report::power_tables(&assumptions, &found);
     let figure = isostudy_report::power_figure(&assumptions, &found)?;
