@@ -2,15 +2,16 @@
 """Batches of the jobs that `isostudy plan` lists: what a scheduler starts as one task.
 
     batches.py list PLAN            a line per batch: name, jobs, expected seconds, what is left to do
-    batches.py run PLAN NAME        does the jobs of one batch, one after the other
-    batches.py status PLAN          how many jobs are done, and the last words of those that failed
+    batches.py run PLAN NAME        does the jobs of one batch, in one process
+    batches.py status PLAN          how many jobs are done, and the last words of those that are not
 
 PLAN is the JSON of `isostudy plan STUDY --json`. Short jobs of one kind share a batch until they are
 expected to take --seconds together (60). A timing is a batch alone, for it wants a whole node.
 
-A batch that is done leaves a marker in OUT/.workflow/, named after the digests of its jobs. So a
-changed study has other markers, and what did not change is not started again. What a batch says is in
-OUT/.workflow/log/.
+A batch that is done leaves a marker in OUT/.workflow/, named after the digests of its jobs. Markers of
+other plans go, and so do those whose files are gone. The report always runs, for it checks everything.
+What a job was first expected to take is kept in OUT/.workflow/costs.json, so that another plan has the
+same batches of what did not change. What a batch says is in OUT/.workflow/log/.
 """
 
 import argparse
@@ -18,8 +19,10 @@ import hashlib
 import json
 import os
 import pathlib
+import socket
 import subprocess
 import sys
+import time
 
 # Of a job that a program makes, nobody knows how long it takes.
 UNKNOWN_S = 60.0
@@ -39,9 +42,45 @@ class Batch:
         # The batches that come first, filled in when all are known.
         self.needs = []
 
+    def is_done(self):
+        return os.path.exists(self.marker)
+
 
 def expected(job):
     return UNKNOWN_S if job["expected_s"] is None else job["expected_s"]
+
+
+def with_first_costs(plan):
+    """Puts what each job was first expected to take into a plan: trials differ from one plan to the next."""
+    path = folder(plan) / "costs.json"
+    try:
+        known = json.loads(path.read_text())
+    except (FileNotFoundError, json.JSONDecodeError):
+        known = {}
+    now = {job["digest"]: known.get(job["digest"], job["expected_s"]) for job in plan["jobs"]}
+    for job in plan["jobs"]:
+        job["expected_s"] = now[job["digest"]]
+    if now.keys() - known.keys():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        written = path.with_suffix(f".{os.getpid()}")
+        written.write_text(json.dumps(known | now))
+        os.replace(written, path)
+
+
+def forget(batches):
+    """Removes the markers of other plans, and those of batches whose files are gone."""
+    plan = batches[0].plan
+    out = pathlib.Path(plan["out"])
+
+    def is_there(job):
+        left_out = out / "failed" / (job["id"].replace("/", ".") + ".json")
+        return left_out.exists() or all((out / path).exists() for path in job["outputs"])
+
+    is_report = lambda batch: batch.jobs[0]["kind"] == "report"
+    kept = {batch.marker for batch in batches if not is_report(batch) and all(map(is_there, batch.jobs))}
+    for marker in folder(plan).glob("*.done"):
+        if str(marker) not in kept:
+            marker.unlink(missing_ok=True)
 
 
 def folder(plan):
@@ -53,6 +92,7 @@ def read(path, seconds):
     plan = json.loads(pathlib.Path(path).read_text())
     if plan["schema"] != 1:
         sys.exit(f"{path}: schema {plan['schema']}; this script knows 1")
+    with_first_costs(plan)
     batches, jobs = [], []
 
     def close():
@@ -88,11 +128,17 @@ def run(batch, program):
     command += ["--threads", "0" if batch.exclusive or is_report else "1"]
     command += os.environ.get("ISOSTUDY_JOB_OPTIONS", "").split()
     command += ["--digests", ",".join(job["digest"] for job in batch.jobs), *(job["id"] for job in batch.jobs)]
-    done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    host = socket.gethostname()
+    log(batch).write_text(f"begun {time.strftime('%Y-%m-%d %H:%M:%S')} on {host}, and not ended\n")
+    try:
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    except OSError as error:
+        log(batch).write_text(f"isostudy: {program}: {error.strerror}\nfailed on {host}\n")
+        sys.exit(f"{program}: {error.strerror}")
     said = done.stdout.decode(errors="replace")
     # A report whose check failed is one: it says what differs, or what was left out.
     is_done = done.returncode == 0 or is_report and done.returncode == 1
-    log(batch).write_text(said + ("" if is_done else f"failed: exit code {done.returncode}\n"))
+    log(batch).write_text(said + ("" if is_done else f"failed with exit code {done.returncode} on {host}\n"))
     if not is_done:
         sys.stderr.write(f"{batch.name}: {said}")
         return done.returncode if done.returncode > 0 else 1
@@ -101,14 +147,13 @@ def run(batch, program):
 
 
 def status(batches):
-    done = sum(len(batch.jobs) for batch in batches if os.path.exists(batch.marker))
+    done = sum(len(batch.jobs) for batch in batches if batch.is_done())
     print(f"{done} of {sum(len(batch.jobs) for batch in batches)} jobs done")
     for batch in batches:
-        path = log(batch)
-        said = path.read_text() if path.exists() and not os.path.exists(batch.marker) else ""
-        if "\nfailed: " in "\n" + said:
-            words = [line for line in said.splitlines() if line.startswith("isostudy: ")]
-            print(f"{batch.name}: {words[-1] if words else said.splitlines()[-1]}")
+        if not batch.is_done() and log(batch).exists():
+            said = log(batch).read_text().splitlines()
+            words = [line for line in said if line.startswith("isostudy: ")]
+            print(f"{batch.name}: {(words or said or ['no word'])[-1]}")
 
 
 def main():
@@ -122,7 +167,7 @@ def main():
     batches = read(arguments.plan, arguments.seconds)
     if arguments.verb == "list":
         for batch in batches:
-            state = "done" if os.path.exists(batch.marker) else "to do"
+            state = "done" if batch.is_done() else "to do"
             print(f"{batch.name}\t{len(batch.jobs)}\t{batch.seconds:.1f}\t{state}")
     elif arguments.verb == "status":
         status(batches)

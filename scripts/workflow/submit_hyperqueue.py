@@ -31,7 +31,7 @@ def submit(client, batches, arguments):
     job = Job(max_fails=None)
     tasks = {}
     for batch in batches:
-        if os.path.exists(batch.marker):
+        if batch.is_done():
             continue
         command = [sys.executable, SCRIPT, "run", arguments.plan, batch.name]
         command += ["--isostudy", arguments.isostudy, "--seconds", str(arguments.seconds)]
@@ -59,6 +59,7 @@ def main():
     parser.add_argument("--isostudy", default="isostudy")
     arguments = parser.parse_args()
     batches = plans.read(arguments.plan, arguments.seconds)
+    plans.forget(batches)
     if arguments.server:
         is_done = submit(Client(arguments.server), batches, arguments)
     else:

@@ -12,7 +12,7 @@ use isostudy_extract::{Execution, Extractor};
 use isostudy_field::{Counted, FieldCache};
 use isostudy_finish::Extent;
 use isostudy_mesh::TriangleMesh;
-use isostudy_program::{Program, ProgramError, Ready, Request, Samples, Worker};
+use isostudy_program::{End, Problem, Program, ProgramError, Ready, Request, Samples, Worker};
 use rayon::prelude::*;
 use std::hint::black_box;
 use std::path::Path;
@@ -189,6 +189,23 @@ pub(crate) fn with_normals(mut mesh: TriangleMesh) -> TriangleMesh {
         mesh.normals.iter_mut().filter(|normal| !normal.is_finite()).for_each(|normal| *normal = Vec3::Z);
     }
     mesh
+}
+
+/// Whether it would fail so once more: not where a program was killed, ran out of what the machine has, or was slow.
+pub(crate) fn fails_again(error: &anyhow::Error) -> bool {
+    let of_program = |error: &ProgramError| {
+        !matches!(
+            *error.problem,
+            Problem::Ended { end: End::Signal(_), .. }
+                | Problem::Io { .. }
+                | Problem::Start(_)
+                | Problem::TimeLimit { .. }
+                | Problem::NotEnded { .. }
+        )
+    };
+    error.chain().any(|cause| {
+        cause.downcast_ref().is_some_and(of_program) || cause.downcast_ref::<CannotMake>().is_some()
+    })
 }
 
 /// What a program or a family could not do, if that is why something failed: the other methods then go on.

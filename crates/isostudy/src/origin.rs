@@ -1,7 +1,8 @@
 //! Whose results a folder holds. Two study files may have one id, and would write one folder.
 
 use crate::input;
-use anyhow::{Context, Result, bail};
+use crate::store::{write_new, write_whole};
+use anyhow::{Result, bail};
 use std::path::{Component, Path, PathBuf};
 
 /// Beside the stamps of stages, and none of them.
@@ -36,14 +37,21 @@ pub(crate) fn claim(folder: &Path, source: &Path) -> Result<()> {
             source.display()
         );
     }
-    let write = || -> std::io::Result<()> {
-        std::fs::create_dir_all(folder.join(".stages"))?;
-        std::fs::write(&kept, way.to_string_lossy().as_bytes())
+    // Whole or not at all: others may claim the folder at this moment.
+    let bytes = way.to_string_lossy();
+    let written = if kept.exists() {
+        write_whole(&kept, bytes.as_bytes())
+    } else {
+        write_new(&kept, bytes.as_bytes()).or_else(|error| match owner(folder) {
+            Some(other) if input::is_same(&other, source) => Ok(()),
+            Some(other) => bail!("{}: {} has just taken it", folder.display(), other.display()),
+            None => Err(error),
+        })
     };
-    match write() {
+    match written {
         // Where nothing can be written, nothing is written over.
-        Err(error) if folder.is_dir() && is_read_only(&error) => Ok(()),
-        written => written.with_context(|| format!("cannot write {}", kept.display())),
+        Err(error) if folder.is_dir() && error.chain().any(is_read_only) => Ok(()),
+        written => written,
     }
 }
 
@@ -62,8 +70,10 @@ pub(crate) fn owner(folder: &Path) -> Option<PathBuf> {
     Some(here.and_then(|here| whole.strip_prefix(here).ok().map(Path::to_path_buf)).unwrap_or(whole))
 }
 
-fn is_read_only(error: &std::io::Error) -> bool {
-    matches!(error.kind(), std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::ReadOnlyFilesystem)
+fn is_read_only(error: &(dyn std::error::Error + 'static)) -> bool {
+    use std::io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
+    let kind = error.downcast_ref().map(std::io::Error::kind);
+    kind.is_some_and(|kind| matches!(kind, PermissionDenied | ReadOnlyFilesystem))
 }
 
 /// The way from a folder to a file.

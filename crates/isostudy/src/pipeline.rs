@@ -43,7 +43,6 @@ pub(crate) use worker::{Invocation, measure};
 
 use crate::families::CannotMake;
 use crate::fields::Fields;
-use crate::input;
 use crate::made;
 use crate::prepare::{Prepared, Spacings, Wanted, prepare};
 use crate::store::{Inputs, Stamp, Store, Writer};
@@ -115,7 +114,12 @@ impl<'a> Pipeline<'a> {
         let made =
             [turntables, pairs, forms, stills, pictures, chunks, stored, vec![timings, tables]].concat();
         self.page(&meshes, &made, viewer, &shown)?;
-        self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
+        // What failed as a job may be asked for by another, until somebody does the whole study.
+        let is_by_jobs = self.making != Making::All;
+        self.store.retire_untouched(|stage| {
+            ASKED_FOR.iter().any(|start| stage.starts_with(start))
+                || is_by_jobs && stage.starts_with("failed/")
+        })?;
         self.unexplained()
     }
 
@@ -154,7 +158,9 @@ impl<'a> Pipeline<'a> {
     /// # Errors
     /// Anything else that went wrong.
     fn fail(&self, id: &ConfigurationId, error: anyhow::Error) -> Result<()> {
-        if made::own_failure(&error).is_none() {
+        // A job that may do better another time fails, so that a scheduler starts it again.
+        let is_job = matches!(self.making, Making::Only(_));
+        if made::own_failure(&error).is_none() || is_job && !made::fails_again(&error) {
             return Err(error);
         }
         self.leave_out(id, format!("{error:#}"));
@@ -203,16 +209,15 @@ impl<'a> Pipeline<'a> {
         if let Some(failed) = self.store.peek(&failure, inputs.clone())
             && !(is_job && self.store.forced())
         {
-            let file = self.store.root().join(failed.file(".json"));
-            let why: String =
-                serde_json::from_slice(&input::bytes(&file)?).with_context(|| file.display().to_string())?;
+            let why: String = serde_json::from_slice(&self.store.read(&failed, ".json")?)
+                .with_context(|| failed.file(".json").to_owned())?;
             return Err(CannotMake(why).into());
         }
         match &self.making {
             Making::Only(_) if is_job => {
                 let made = self.store.stage(name, inputs.clone(), make).with_context(|| name.to_owned());
                 if let Err(error) = &made
-                    && made::own_failure(error).is_some()
+                    && made::fails_again(error)
                 {
                     self.store.stage(&failure, inputs, |writer| {
                         let file = format!("failed/{}.json", name.replace('/', "."));

@@ -159,6 +159,23 @@ impl Store {
         Some(found)
     }
 
+    /// The bytes of a stage's file, by the end of its path: those that the stamp says.
+    ///
+    /// # Errors
+    /// If it cannot be read, or has other bytes: then somebody else works on the folder.
+    pub(crate) fn read(&self, stamp: &Stamp, ending: &str) -> Result<Vec<u8>> {
+        let path = stamp.file(ending);
+        let bytes = crate::input::bytes(&self.root.join(path))?;
+        let is_whole = stamp.files.iter().any(|file| file.path == path && file.sha256 == sha256(&bytes));
+        if !is_whole {
+            bail!(
+                "{}: it was changed while it was read. Another study, or an earlier form of this one, works on this folder",
+                self.root.join(path).display()
+            );
+        }
+        Ok(bytes)
+    }
+
     /// Every stage that has a stamp, by name.
     pub(crate) fn stamps(&self) -> Result<Vec<Stamp>> {
         let mut stamps = Vec::new();
@@ -273,8 +290,9 @@ impl Writer<'_> {
         let full = self.root.join(path);
         let shown = shown_bytes(path, bytes);
         let bytes = &*shown;
-        write_whole(&full, bytes)?;
-        let metadata = fs::metadata(&full).with_context(|| format!("cannot read {}", full.display()))?;
+        let file = write_whole_by(&full, |file| file.write_all(bytes))?;
+        // Of the file that was written: another may have its name by now.
+        let metadata = file.metadata().with_context(|| format!("cannot read {}", full.display()))?;
         self.files.push(FileStamp {
             path: path.into(),
             bytes: metadata.len(),
@@ -305,8 +323,8 @@ impl Stamp {
 
 /// Takes the lock, or `None` where the folder cannot be written and so no other run can either, or where its file system has none.
 fn lock(path: &Path, take: impl Fn(&File) -> Result<(), TryLockError>) -> Result<Option<File>> {
-    // Opened and not made anew: what is held is the file.
-    let file = match File::options().create(true).truncate(false).write(true).open(path) {
+    // Opened and not made anew: what is held is the file. Where locks are those of POSIX, a shared one takes a file that can be read.
+    let file = match File::options().create(true).truncate(false).read(true).write(true).open(path) {
         Ok(file) => file,
         Err(error) if matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem) => {
             return Ok(None);
@@ -318,10 +336,8 @@ fn lock(path: &Path, take: impl Fn(&File) -> Result<(), TryLockError>) -> Result
         match take(&file) {
             Ok(()) => return Ok(Some(file)),
             Err(TryLockError::WouldBlock) => std::thread::sleep(LOCK_PAUSE),
-            Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => return Ok(None),
-            Err(TryLockError::Error(error)) => {
-                return Err(error).with_context(|| format!("cannot lock {}", path.display()));
-            }
+            // The file system has no locks, or nobody who keeps them.
+            Err(TryLockError::Error(_)) => return Ok(None),
         }
     }
     bail!("{} says that another run is at work there", path.display())
@@ -345,22 +361,21 @@ fn hexadecimal(bytes: &[u8]) -> String {
 
 /// Writes a file so that it is there whole or not at all.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    write_whole_by(path, |file| file.write_all(bytes))
+    write_whole_by(path, |file| file.write_all(bytes)).map(drop)
 }
 
-/// The same of what `write` writes, which need not be in memory.
+/// The same of what `write` writes, which need not be in memory; returns the file.
 pub(crate) fn write_whole_by(
     path: &Path,
     write: impl FnOnce(&mut File) -> std::io::Result<()>,
-) -> Result<()> {
+) -> Result<File> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let all = || -> std::io::Result<()> {
+    let all = || -> std::io::Result<File> {
         // Its errors name the temporary file, which nobody asked for.
         let mut partial = partial_file().tempfile_in(folder).map_err(|error| error.kind())?;
         write(partial.as_file_mut())?;
-        partial.persist(path)?;
-        Ok(())
+        Ok(partial.persist(path)?)
     };
     all().with_context(|| format!("cannot write {}", path.display()))
 }

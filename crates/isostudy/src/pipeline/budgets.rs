@@ -87,7 +87,7 @@ impl Pipeline<'_> {
             writer.write_json(&file, &found)
         })?;
         step.count(stamp.redone);
-        let text = std::fs::read(self.store.root().join(&file)).with_context(|| file.clone())?;
+        let text = self.store.read(&stamp, ".json")?;
         let found: Found = serde_json::from_slice(&text).with_context(|| file.clone())?;
         self.keep_spacing(found.id, purpose, found.spacing);
         Ok(())

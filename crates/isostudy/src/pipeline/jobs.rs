@@ -36,6 +36,7 @@ const MESHES_HELD: f64 = 10.0;
 const PIXEL_S: f64 = 1.5e-7;
 /// Seconds for tables and pages, for each configuration.
 const PAGES_S: f64 = 0.25;
+const PAGES_BYTES: f64 = 4.0 * 1024.0 * 1024.0;
 
 /// A part of a study that is done by itself.
 #[derive(Debug, Clone)]
@@ -300,8 +301,9 @@ impl<'a> Pipeline<'a> {
             };
             let place = self.study.configurations.iter().position(|of| of == configuration);
             let code = &codes[place.context("one of the study's own")?];
-            stamps.push(self.turntable(configuration, code, &meshes, &step)?);
-            step.count(true);
+            let stamp = self.turntable(configuration, code, &meshes, &step)?;
+            step.count(stamp.redone);
+            stamps.push(stamp);
         }
         step.end();
         let Ok(stamps) = stamps.try_into() else { unreachable!("one each") };
@@ -399,7 +401,10 @@ impl<'a> Pipeline<'a> {
         let file = &self.study.file;
         let pixels = f64::from(file.turntable.width) * f64::from(file.turntable.height);
         let drawn = pixels * f64::from(file.turntable.frames) * PIXEL_S;
-        let light = |seconds: f64| (Some(seconds), Some(PROCESS_BYTES as u64));
+        let light = |seconds: f64, bytes: f64| (Some(seconds), Some((PROCESS_BYTES + bytes) as u64));
+        // Frames are held as they are drawn, and once more as they are compressed.
+        let frames = 3.0 * pixels * f64::from(file.turntable.frames);
+        let scale = f64::from(file.stimuli.pair_scale);
         Ok(match job {
             Job::Budget(purpose, of) => {
                 let spacing = Wanted::For(*purpose).spacing(self.study.object(of));
@@ -419,7 +424,8 @@ impl<'a> Pipeline<'a> {
                 let configuration = configuration.context("checked when the study was read")?;
                 self.mesh_cost(configuration, Purpose::Stimulus, of.spacing, [1.0, 1.0], trials)?
             }
-            Job::Turntable(_) | Job::Pair(_) => light(drawn),
+            Job::Turntable(_) => light(drawn, frames),
+            Job::Pair(_) => light(drawn, frames * (1.0 + 2.0 * scale * scale)),
             Job::Timings => {
                 let section = &file.benchmark;
                 let times = f64::from(section.warmup + section.short_iterations + u32::from(section.memory));
@@ -430,7 +436,10 @@ impl<'a> Pipeline<'a> {
                 let times = 3.0 * f64::from(file.benchmark.short_iterations);
                 self.times_cost(&|of| of.object == *object, times, trials)?
             }
-            Job::Report => light(PAGES_S * self.study.configurations.len() as f64),
+            Job::Report => {
+                let configurations = self.study.configurations.len() as f64;
+                light(PAGES_S * configurations, PAGES_BYTES * configurations)
+            }
         })
     }
 
@@ -454,7 +463,7 @@ impl<'a> Pipeline<'a> {
         Ok((Some(extracted * cost.extracting_s + measured * cost.measuring_s), Some(bytes as u64)))
     }
 
-    /// Of some configurations that are extracted so often; those that cannot be tried are not in it.
+    /// Of some configurations that are extracted so often; `None` where one of them cannot be tried.
     fn times_cost(
         &self,
         which: &dyn Fn(&Configuration) -> bool,
@@ -465,8 +474,9 @@ impl<'a> Pipeline<'a> {
         for of in self.study.configurations.iter().filter(|of| which(of)) {
             let spacing = Wanted::For(Purpose::Benchmark).spacing(self.study.object(of));
             let (s, b) = self.mesh_cost(of, Purpose::Benchmark, spacing, [times, 0.0], trials)?;
-            seconds += s.unwrap_or(0.0);
-            bytes = bytes.max(b.unwrap_or(0));
+            let (Some(s), Some(b)) = (s, b) else { return Ok((None, None)) };
+            seconds += s;
+            bytes = bytes.max(b);
         }
         Ok((Some(seconds), Some(bytes)))
     }

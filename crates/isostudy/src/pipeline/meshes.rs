@@ -1,7 +1,6 @@
 //! Every configuration's mesh, once a purpose, with its record.
 
 use super::Pipeline;
-use crate::input;
 use crate::made::Made;
 use crate::prepare::{Prepared, Wanted};
 use crate::records::{mesh_record, of_mesh};
@@ -168,18 +167,16 @@ impl Pipeline<'_> {
     /// The records of finished meshes.
     pub(super) fn mesh_records(&self, meshes: &Meshes) -> Result<Vec<MeshRecord>> {
         let read = |stamp: &Stamp| {
-            let file = stamp.file(".json");
-            let text = input::bytes(&self.store.root().join(file))?;
-            serde_json::from_slice(&text).with_context(|| file.to_owned())
+            let text = self.store.read(stamp, ".json")?;
+            serde_json::from_slice(&text).with_context(|| stamp.file(".json").to_owned())
         };
         meshes.stamps().map(read).collect()
     }
 
     /// A finished mesh.
     pub(super) fn read_mesh(&self, stamp: &Stamp) -> Result<TriangleMesh> {
-        let file = stamp.file(".ply");
-        let bytes = input::bytes(&self.store.root().join(file))?;
-        isostudy_mesh::read_ply(bytes.as_slice()).with_context(|| file.to_owned())
+        let bytes = self.store.read(stamp, ".ply")?;
+        isostudy_mesh::read_ply(bytes.as_slice()).with_context(|| stamp.file(".ply").to_owned())
     }
 }
 

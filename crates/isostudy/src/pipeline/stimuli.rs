@@ -2,7 +2,6 @@
 
 use super::meshes::TICKS_A_MESH;
 use super::{Meshes, Pipeline};
-use crate::input;
 use crate::picture::{self, Drawn};
 use crate::prepare::Wanted;
 use crate::store::{Inputs, Stamp};
@@ -178,9 +177,8 @@ impl Pipeline<'_> {
     }
 
     pub(super) fn read_animation(&self, stamp: &Stamp) -> Result<Animation> {
-        let file = stamp.file(".gif");
-        let bytes = input::bytes(&self.store.root().join(file))?;
-        Animation::read_gif(bytes.as_slice()).with_context(|| file.to_owned())
+        let bytes = self.store.read(stamp, ".gif")?;
+        Animation::read_gif(bytes.as_slice()).with_context(|| stamp.file(".gif").to_owned())
     }
 
     /// The key is kept apart from the stimuli. Sizes and times of the stimuli still tell; those of the bundle do not.

@@ -1,6 +1,5 @@
 //! Every configuration's mesh at each resolution of the viewer, as compact glTF with its errors.
 
-use crate::input;
 use crate::made::{Made, own_failure};
 use crate::pipeline::meshes::TICKS_A_MESH;
 use crate::pipeline::{Meshes, Pipeline};
@@ -99,8 +98,7 @@ impl Pipeline<'_> {
             let prepared = self.prepare(configuration, wanted)?;
             let mut entry = Entry { schema: 1, factor, spacing, mesh: None, missing: None };
             if factor == AS_STIMULI {
-                let record = self.store.root().join(finished.file(".json"));
-                entry.mesh = Some(serde_json::from_slice(&input::bytes(&record)?)?);
+                entry.mesh = Some(serde_json::from_slice(&self.store.read(finished, ".json")?)?);
                 self.write_level(&prepared, &self.read_mesh(finished)?, &path, writer)?;
             } else {
                 match self.at_another_spacing(configuration, &prepared, step)? {
@@ -121,9 +119,8 @@ impl Pipeline<'_> {
             }
             writer.write_json(&format!("{path}.json"), &entry)
         })?;
-        let file = self.store.root().join(stamp.file(".json"));
-        let text = std::fs::read(&file).with_context(|| file.display().to_string())?;
-        let entry = serde_json::from_slice(&text).with_context(|| file.display().to_string())?;
+        let text = self.store.read(&stamp, ".json")?;
+        let entry = serde_json::from_slice(&text).with_context(|| stamp.file(".json").to_owned())?;
         Ok(Level { id: id.clone(), stamp, entry })
     }
 
