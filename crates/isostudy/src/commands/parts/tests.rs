@@ -89,7 +89,8 @@ fn what_is_no_whole_is_refused_and_the_file_is_named() {
     let copied = refused(&[a.clone(), b.clone(), copy.clone(), c.clone()]);
     assert_eq!(copied, format!("{}: is part 2 of 3, and so is {}", name(&copy), name(&b)));
     // What a part says of itself; the digest is right.
-    let changes: [(fn(&mut Contents), &str); 9] = [
+    type Change = fn(&mut Contents);
+    let changes: [(Change, &str); 9] = [
         (|of| of.command = "design power".into(), "`isostudy design power`"),
         (|of| of.version = "9.9.9".into(), "9.9.9"),
         (|of| of.sources = "0".into(), "other sources"),
