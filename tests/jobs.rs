@@ -102,6 +102,7 @@ fn by_jobs(fixture: &Fixture, jobs: &[Value], random: &mut Random) -> u64 {
 fn a_study_by_jobs_is_the_study_in_one_run() {
     let whole = Fixture::new();
     let run = whole.run("study", &[]);
+    assert!(run.code.is_some_and(|code| code < 2), "{}", run.stderr);
     let in_parts = Fixture::new();
     let jobs = plan(&in_parts);
     // What follows from the others is one job.
@@ -189,12 +190,15 @@ fn what_fails_as_a_job_is_left_out_of_the_report() {
             assert!(job(id(of)).stderr.contains("left out: te_front: "));
         }
     }
+    assert!(job("turntable/te_front").stderr.contains("left out: te_front: "), "after the report too");
     let [one, mut other] = [whole, in_parts].map(|folder| files(&folder.path("out")));
     // A job says why it failed where others find it.
-    assert!(other.remove("failed/mesh.benchmark.te_front.json").is_some());
+    for purpose in ["benchmark", "stimulus"] {
+        assert!(other.remove(&format!("failed/mesh.{purpose}.te_front.json")).is_some(), "{purpose}");
+    }
     let differ: Vec<&String> =
         one.keys().chain(other.keys()).filter(|path| one.get(*path) != other.get(*path)).collect();
-    assert_eq!(differ, ["manifest.json"; 2], "it lists that file as well");
+    assert_eq!(differ, ["manifest.json"; 2], "it lists those files as well");
 }
 
 /// The quick study on engines that clusters have, on this machine; told where their packages cannot be had.
