@@ -1,7 +1,7 @@
 //! Which of two models is closer to the answers? More likelihood alone does not tell: it may be a few people's.
 
 use super::fit::WorthFit;
-use super::participants::Participants;
+use super::participants::{AnsweredPair, Participants};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// How much closer one model is than another.
@@ -29,12 +29,13 @@ pub fn closeness(first: &WorthFit, second: &WorthFit, participants: &Participant
         [0, 1, 2].map(|o| (own[o] / other[o]).ln())
     };
     let ratios: Vec<[f64; 3]> = participants.shown().iter().map(log_ratio).collect();
-    let gain_of = |answers: &[[u32; 3]]| -> f64 {
-        let given = |(counts, ratios): (&[u32; 3], &[f64; 3])| -> f64 {
+    let gain_of = |answered: &[AnsweredPair]| -> f64 {
+        let given = |of: &AnsweredPair| -> f64 {
+            let (counts, ratios) = (of.answers, ratios[of.place()]);
             let given = (0..3).filter(|&o| counts[o] > 0);
             given.map(|o| f64::from(counts[o]) * ratios[o]).sum()
         };
-        answers.iter().zip(&ratios).map(given).sum()
+        answered.iter().map(given).sum()
     };
     let gains: Vec<(f64, f64)> =
         participants.of_kinds().map(|(answers, count)| (gain_of(answers), count as f64)).collect();

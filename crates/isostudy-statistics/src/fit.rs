@@ -1,7 +1,7 @@
 //! Maximum likelihood estimates of a model of paired comparison, with their covariance.
 
 use super::model::{Layout, Model};
-use super::newton::{Matrix, maximise, quadratic};
+use super::newton::{Matrix, maximise};
 use super::pairs::Pairs;
 use super::separation::{Separation, separation};
 use super::side::side_design;
@@ -179,13 +179,15 @@ impl WorthFit {
     /// If there is no such item.
     pub fn standard_error(&self, covariance: &Matrix, item: usize, other: usize) -> f64 {
         assert!(item.max(other) < self.log_worths.len(), "no item {}", item.max(other));
-        let mut x = vec![0.0; self.parameters.len()];
-        for (place, sign) in [(item, 1.0), (other, -1.0)] {
-            if place > 0 {
-                x[place - 1] += sign;
-            }
+        // Of the parameters, two at most have a part in it: the first item's worth is no parameter.
+        let mut parts = [(item, 1.0), (other, -1.0)];
+        parts.sort_by_key(|(item, _)| *item);
+        let parts = || parts.iter().filter(|(item, _)| *item > 0).map(|&(item, sign)| (item - 1, sign));
+        let of_row = |row: usize| parts().map(|(column, sign)| covariance[row][column] * sign).sum::<f64>();
+        if item == other {
+            return 0.0;
         }
-        quadratic(&x, covariance, &x).max(0.0).sqrt()
+        parts().map(|(row, sign)| sign * of_row(row)).sum::<f64>().max(0.0).sqrt()
     }
 
     /// t interval at [`LEVEL`] for l_item - l_other with the sandwich of so many participants, on m - 1 degrees of freedom.

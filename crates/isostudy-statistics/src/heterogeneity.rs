@@ -11,7 +11,7 @@
 
 use super::fit::{FitError, WorthFit};
 use super::newton::{Curvature, Matrix, inverse, ln_determinant, times};
-use super::participants::Participants;
+use super::participants::{AnsweredPair, Participants};
 use super::scale::fit_on_one_scale;
 use super::simulation::davidson;
 use crate::interval::{Interval, LEVEL};
@@ -124,14 +124,14 @@ impl Likelihood {
     fn of(participants: &Participants, fit: &WorthFit) -> Self {
         let side = fit.side.unwrap_or(0.0);
         let step = participants.kinds().div_ceil(MOST_PATTERNS).max(1);
-        let person = |(pattern, people): (&[[u32; 3]], u64)| {
-            let shown = participants.shown().iter().zip(pattern).filter(|(_, answers)| **answers != [0; 3]);
-            let pair = |(&(left, right), answers): (&(usize, usize), &[u32; 3])| {
+        let person = |(pattern, people): (&[AnsweredPair], u64)| {
+            let pair = |of: &AnsweredPair| {
+                let (left, right) = participants.shown()[of.place()];
                 let ahead = fit.log_worths[left] - fit.log_worths[right] + side;
-                (left, right, ahead, answers.map(f64::from))
+                (left, right, ahead, of.answers.map(f64::from))
             };
             let mode = vec![0.0; participants.items()];
-            Person { pairs: shown.map(pair).collect(), people: people as f64, mode }
+            Person { pairs: pattern.iter().map(pair).collect(), people: people as f64, mode }
         };
         let persons = participants.of_kinds().step_by(step).map(person).collect();
         Self { persons, ln_nu: fit.ln_nu.filter(|nu| nu.is_finite()) }

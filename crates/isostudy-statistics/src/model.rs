@@ -85,90 +85,179 @@ impl Layout {
     pub(super) fn likelihood(&self, pairs: &Pairs, parameters: &[f64]) -> Curvature {
         let mut sum = Curvature::zero(self.parameters());
         for pair in &pairs.pairs {
-            match (self.model, self.tie()) {
-                (Model::RaoKupper, Some(tie)) => self.add_threshold(&mut sum, pair, parameters, tie),
-                _ => self.add_weights(&mut sum, pair, parameters),
+            let touched = self.touched(pair.left, pair.right);
+            match (self.model, touched.tie) {
+                (Model::RaoKupper, Some(tie)) => {
+                    add_threshold(&mut sum, &touched, self, pair, parameters, tie)
+                }
+                _ => add_weights(&mut sum, &touched, self, pair, parameters),
             }
         }
         sum
     }
 
-    /// The gradient that one answer has, for left, tie and right of a pair; zero for a tie where there was none.
-    pub(super) fn scores(&self, (left, right): (usize, usize), parameters: &[f64]) -> [Vec<f64>; 3] {
-        [0, 1, 2].map(|outcome| {
+    /// The gradient that one answer has, for left, tie and right of a pair, by the parameters that the pair touches; zero for a
+    /// tie where there was none.
+    pub(super) fn scores(
+        &self,
+        (left, right): (usize, usize),
+        parameters: &[f64],
+    ) -> (Touched, [[f64; 4]; 3]) {
+        let touched = self.touched(left, right);
+        // By the touched parameters alone, as if there were no others.
+        let own = Touched { places: [0, 1, 2, 3], ..touched };
+        let mut at = [0.0; 4];
+        touched.places().iter().zip(&mut at).for_each(|(&place, at)| *at = parameters[place]);
+        let scores = [0, 1, 2].map(|outcome| {
             let mut answers = [0.0; 3];
             answers[outcome] = f64::from(outcome != 1 || self.ties || self.model == Model::BradleyTerry);
-            let one = Pairs { items: self.items, pairs: vec![Pair { left, right, answers }] };
-            self.likelihood(&one, parameters).gradient
-        })
+            let pair = Pair { left, right, answers };
+            let mut sum = Curvature::zero(own.number);
+            match (self.model, own.tie) {
+                (Model::RaoKupper, Some(tie)) => add_threshold(&mut sum, &own, self, &pair, &at, tie),
+                _ => add_weights(&mut sum, &own, self, &pair, &at),
+            }
+            let mut score = [0.0; 4];
+            score[..own.number].copy_from_slice(&sum.gradient);
+            score
+        });
+        (touched, scores)
     }
 
-    /// Derivative of l_left - l_right + delta by the parameters.
-    fn difference(&self, pair: &Pair) -> Vec<f64> {
-        let mut x = vec![0.0; self.parameters()];
-        if pair.left > 0 {
-            x[pair.left - 1] = 1.0;
+    /// The parameters that a pair touches.
+    fn touched(&self, left: usize, right: usize) -> Touched {
+        let mut touched = Touched { number: 0, places: [0; 4], x: [0.0; 4], tie: None };
+        let worths = if left < right { [(left, 1.0), (right, -1.0)] } else { [(right, -1.0), (left, 1.0)] };
+        worths.into_iter().filter(|(item, _)| *item > 0).for_each(|(item, x)| touched.push(item - 1, x));
+        if let Some(tie) = self.tie() {
+            touched.tie = Some(touched.number);
+            touched.push(tie, 0.0);
         }
-        if pair.right > 0 {
-            x[pair.right - 1] = -1.0;
-        }
-        if let Some(side) = self.side() {
-            x[side] = 1.0;
-        }
-        x
+        self.side().into_iter().for_each(|side| touched.push(side, 1.0));
+        touched
+    }
+}
+
+/// The parameters that a pair touches, of which there are four at most, ascending: a thousand items have a thousand parameters.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Touched {
+    number: usize,
+    places: [usize; 4],
+    /// Derivative of l_left - l_right + delta by each of them.
+    x: [f64; 4],
+    /// Which of them is the tie parameter.
+    tie: Option<usize>,
+}
+
+impl Touched {
+    fn push(&mut self, place: usize, x: f64) {
+        (self.places[self.number], self.x[self.number]) = (place, x);
+        self.number += 1;
     }
 
-    /// Davidson and Bradley-Terry.
-    fn add_weights(&self, sum: &mut Curvature, pair: &Pair, parameters: &[f64]) {
-        let x = self.difference(pair);
-        add_log_linear(sum, &x, self.given_side, self.tie(), pair.answers, parameters);
+    /// Their places among all parameters.
+    pub(super) fn places(&self) -> &[usize] {
+        &self.places[..self.number]
     }
 
-    /// Rao and Kupper: a logistic cut in three at -eta and eta.
-    fn add_threshold(&self, sum: &mut Curvature, pair: &Pair, parameters: &[f64], tie: usize) {
-        let x = self.difference(pair);
-        let u = self.given_side + x.iter().zip(parameters).map(|(x, p)| x * p).sum::<f64>();
-        let eta = parameters[tie];
-        let towards = |sign: f64| {
-            let mut d: Vec<f64> = x.iter().map(|x| sign * x).collect();
-            d[tie] = -1.0;
-            d
-        };
-        let [left, ties, right] = pair.answers;
-        let cuts = [(left, u - eta, towards(1.0)), (right, -u - eta, towards(-1.0))];
-        let logistic = |z: f64| 1.0 / (1.0 + (-z).exp());
-        for (count, z, d) in &cuts {
-            // 1 less a chance is the logistic of the opposite: nothing cancels.
-            let (chance, rest) = (logistic(*z), logistic(-z));
-            sum.value -= count * softplus(-z);
-            for i in 0..x.len() {
-                sum.gradient[i] += count * rest * d[i];
-                for j in 0..x.len() {
-                    sum.information[i][j] += count * chance * rest * d[i] * d[j];
-                }
+    /// A sum over them of factors and their values among all parameters.
+    fn dot(&self, factors: &[f64; 4], parameters: &[f64]) -> f64 {
+        self.places().iter().zip(factors).map(|(&place, factor)| factor * parameters[place]).sum()
+    }
+}
+
+/// Davidson and Bradley-Terry, as [`add_log_linear`] has them.
+fn add_weights(sum: &mut Curvature, touched: &Touched, layout: &Layout, pair: &Pair, parameters: &[f64]) {
+    let [left, ties, right] = pair.answers;
+    let mut features = [touched.x.map(|x| 0.5 * x), touched.x.map(|x| -(0.5 * x)), [0.0; 4]];
+    let mut counts = [left, right, ties];
+    let outcomes = match touched.tie {
+        Some(tie) => {
+            features[2][tie] = 1.0;
+            3
+        }
+        None => {
+            counts[..2].iter_mut().for_each(|count| *count += 0.5 * ties);
+            2
+        }
+    };
+    let (features, counts) = (&features[..outcomes], &counts[..outcomes]);
+    let mut logs = [0.0; 3];
+    logs.iter_mut().zip(features).for_each(|(log, feature)| *log = touched.dot(feature, parameters));
+    logs[0] += 0.5 * layout.given_side;
+    logs[1] -= 0.5 * layout.given_side;
+    let likeliest = (0..outcomes).fold(0, |best, k| if logs[k] > logs[best] { k } else { best });
+    let behind = logs.map(|log| log - logs[likeliest]);
+    let others = (0..outcomes).filter(|&k| k != likeliest);
+    let total = others.map(|k| behind[k].exp()).sum::<f64>().ln_1p();
+    let n: f64 = counts.iter().sum();
+    let chances = behind.map(|behind| (behind - total).exp());
+    for (k, feature) in features.iter().enumerate() {
+        let mut from_mean = [0.0; 4];
+        for (i, from_mean) in from_mean[..touched.number].iter_mut().enumerate() {
+            *from_mean = features.iter().zip(&chances).map(|(other, p)| p * (feature[i] - other[i])).sum();
+        }
+        sum.value += counts[k] * (behind[k] - total);
+        for (i, &row) in touched.places().iter().enumerate() {
+            sum.gradient[row] += counts[k] * from_mean[i];
+            for (j, &column) in touched.places().iter().enumerate() {
+                sum.information[row][column] += n * chances[k] * from_mean[i] * from_mean[j];
             }
         }
-        if ties == 0.0 {
-            return;
-        }
-        // P(tie) = 1 - F(u - eta) - F(-u - eta), factored so that nothing cancels: (e^{2 eta} - 1) F(u - eta) F(-u - eta).
-        let [(_, a, da), (_, b, db)] = &cuts;
-        let ([fa, fb], [ra, rb]) = ([*a, *b].map(logistic), [-a, -b].map(logistic));
-        if eta <= 0.0 {
-            sum.value = f64::NEG_INFINITY;
-            return;
-        }
-        let growth = (2.0 * eta).exp_m1();
-        sum.value += ties * (growth.ln() - softplus(-a) - softplus(-b));
-        for i in 0..x.len() {
-            let free = if i == tie { 2.0 * (1.0 + 1.0 / growth) } else { 0.0 };
-            sum.gradient[i] += ties * (free + ra * da[i] + rb * db[i]);
-            for j in 0..x.len() {
-                let curved = fa * ra * da[i] * da[j] + fb * rb * db[i] * db[j];
-                // d2/d eta2 of ln(e^{2 eta} - 1) = -4 e^{2 eta} / (e^{2 eta} - 1)^2.
-                let free = if i == tie && j == tie { 4.0 * (growth + 1.0) / (growth * growth) } else { 0.0 };
-                sum.information[i][j] += ties * (curved + free);
+    }
+}
+
+/// Rao and Kupper: a logistic cut in three at -eta and eta.
+fn add_threshold(
+    sum: &mut Curvature,
+    touched: &Touched,
+    layout: &Layout,
+    pair: &Pair,
+    parameters: &[f64],
+    tie: usize,
+) {
+    let (x, places) = (&touched.x, touched.places());
+    let u = layout.given_side + touched.dot(x, parameters);
+    let eta = parameters[places[tie]];
+    let towards = |sign: f64| {
+        let mut d = x.map(|x| sign * x);
+        d[tie] = -1.0;
+        d
+    };
+    let [left, ties, right] = pair.answers;
+    let cuts = [(left, u - eta, towards(1.0)), (right, -u - eta, towards(-1.0))];
+    let logistic = |z: f64| 1.0 / (1.0 + (-z).exp());
+    for (count, z, d) in &cuts {
+        // 1 less a chance is the logistic of the opposite: nothing cancels.
+        let (chance, rest) = (logistic(*z), logistic(-z));
+        sum.value -= count * softplus(-z);
+        for (i, &row) in places.iter().enumerate() {
+            sum.gradient[row] += count * rest * d[i];
+            for (j, &column) in places.iter().enumerate() {
+                sum.information[row][column] += count * chance * rest * d[i] * d[j];
             }
+        }
+    }
+    if ties == 0.0 {
+        return;
+    }
+    // P(tie) = 1 - F(u - eta) - F(-u - eta), factored so that nothing cancels: (e^{2 eta} - 1) F(u - eta) F(-u - eta).
+    let [(_, a, da), (_, b, db)] = &cuts;
+    let ([fa, fb], [ra, rb]) = ([*a, *b].map(logistic), [-a, -b].map(logistic));
+    if eta <= 0.0 {
+        sum.value = f64::NEG_INFINITY;
+        return;
+    }
+    let growth = (2.0 * eta).exp_m1();
+    sum.value += ties * (growth.ln() - softplus(-a) - softplus(-b));
+    for (i, &row) in places.iter().enumerate() {
+        let free = if i == tie { 2.0 * (1.0 + 1.0 / growth) } else { 0.0 };
+        sum.gradient[row] += ties * (free + ra * da[i] + rb * db[i]);
+        for (j, &column) in places.iter().enumerate() {
+            let curved = fa * ra * da[i] * da[j] + fb * rb * db[i] * db[j];
+            // d2/d eta2 of ln(e^{2 eta} - 1) = -4 e^{2 eta} / (e^{2 eta} - 1)^2.
+            let free = if i == tie && j == tie { 4.0 * (growth + 1.0) / (growth * growth) } else { 0.0 };
+            sum.information[row][column] += ties * (curved + free);
         }
     }
 }

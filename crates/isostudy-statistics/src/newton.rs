@@ -1,5 +1,7 @@
 //! Newton's method on a concave log-likelihood, and the small dense algebra it needs.
 
+use rayon::prelude::*;
+
 /// A square matrix by rows.
 pub type Matrix = Vec<Vec<f64>>;
 
@@ -38,6 +40,9 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 const LEAST: f64 = 1e-9;
 /// The step, beside the parameter, from which one step more leaves rounding alone.
 const SHORT: f64 = 1e-6;
+/// With more parameters than this, steps are solved for without the inverse of the information, and rows of inverses are shared
+/// out among threads.
+const DENSE: usize = 64;
 
 /// Climbs from `start` until the gain left, g' H^-1 g, is below what the log-likelihood's size lets anyone see or below
 /// 1e-13, and the step is short; then takes one step more: the convergence being quadratic, what is left is rounding.
@@ -59,8 +64,10 @@ fn climb(start: Vec<f64>, likelihood: impl Fn(&[f64]) -> Curvature, part: Part) 
     let mut at = start;
     let mut here = likelihood(&at);
     for _ in 0..MOST_STEPS {
-        let covariance = inverse(&here.information)?;
-        let mut step = times(&covariance, &here.gradient);
+        let mut step = match at.len() <= DENSE {
+            true => times(&inverse(&here.information)?, &here.gradient),
+            false => solved(&here.information, &here.gradient)?,
+        };
         let gain: f64 = step.iter().zip(&here.gradient).map(|(s, g)| s * g).sum();
         let longest = step.iter().map(|s| s.abs()).fold(0.0, f64::max);
         step.iter_mut().for_each(|s| *s /= (longest / LONGEST).max(1.0));
@@ -134,21 +141,44 @@ pub(super) fn ln_determinant(matrix: &Matrix) -> Option<f64> {
 pub(super) fn inverse(matrix: &Matrix) -> Option<Matrix> {
     let n = matrix.len();
     let factor = factor(matrix)?;
-    // Symmetric: its columns are its rows.
-    let mut inverse = Vec::with_capacity(n);
-    for column in 0..n {
+    let across = transposed(&factor);
+    let row = |row: usize| {
         let mut x = vec![0.0; n];
-        for i in 0..n {
-            let sum: f64 = (0..i).map(|k| factor[i][k] * x[k]).sum();
-            x[i] = (f64::from(i == column) - sum) / factor[i][i];
-        }
-        for i in (0..n).rev() {
-            let sum: f64 = (i + 1..n).map(|k| factor[k][i] * x[k]).sum();
-            x[i] = (x[i] - sum) / factor[i][i];
-        }
-        inverse.push(x);
+        x[row] = 1.0;
+        substitute(&factor, &across, &mut x, row);
+        x
+    };
+    // Symmetric: its columns are its rows.
+    match n <= DENSE {
+        true => Some((0..n).map(row).collect()),
+        false => Some((0..n).into_par_iter().map(row).collect()),
     }
-    Some(inverse)
+}
+
+/// The x with matrix x = right for a symmetric positive definite matrix; `None` if it is not one.
+fn solved(matrix: &Matrix, right: &[f64]) -> Option<Vec<f64>> {
+    let factor = factor(matrix)?;
+    let mut x = right.to_vec();
+    substitute(&factor, &transposed(&factor), &mut x, 0);
+    Some(x)
+}
+
+fn transposed(matrix: &Matrix) -> Matrix {
+    let n = matrix.len();
+    (0..n).map(|i| matrix.iter().map(|row| row[i]).collect()).collect()
+}
+
+/// Forward and back through Cholesky's lower factor and its transpose; what comes before `first` is zero.
+fn substitute(factor: &Matrix, across: &Matrix, x: &mut [f64], first: usize) {
+    let n = x.len();
+    for i in first..n {
+        let sum: f64 = (first..i).map(|k| factor[i][k] * x[k]).sum();
+        x[i] = (x[i] - sum) / factor[i][i];
+    }
+    for i in (0..n).rev() {
+        let sum: f64 = (i + 1..n).map(|k| across[i][k] * x[k]).sum();
+        x[i] = (x[i] - sum) / factor[i][i];
+    }
 }
 
 /// Matrix times vector.

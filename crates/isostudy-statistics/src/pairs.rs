@@ -1,6 +1,7 @@
 //! Answers added up by who stood left and who stood right: all that the models need to know.
 
 use super::ballot::{Outcome, ShownBallot};
+use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Answers to one item on the left of another; parts of answers where a penalty was added.
@@ -44,10 +45,19 @@ impl Pairs {
     /// # Panics
     /// If an item is not below `items`.
     pub fn of<'a>(items: usize, ballots: impl IntoIterator<Item = &'a ShownBallot>) -> Self {
-        let one = |b: &ShownBallot| {
-            (b.left(), b.right(), Outcome::ALL.map(|o| f64::from(u8::from(o == b.outcome()))))
-        };
-        Self::new(items, ballots.into_iter().filter(|b| b.left() != b.right()).map(one))
+        let mut answers: Vec<(u32, u32, Outcome)> = ballots
+            .into_iter()
+            .filter(|b| b.left() != b.right())
+            .map(|b| (b.left() as u32, b.right() as u32, b.outcome()))
+            .collect();
+        answers.par_sort_unstable();
+        let alike = answers.chunk_by(|a, b| a == b).map(|alike| {
+            let (left, right, outcome) = alike[0];
+            let mut counts = [0.0; 3];
+            counts[outcome.index()] = alike.len() as f64;
+            (left as usize, right as usize, counts)
+        });
+        Self::new(items, alike)
     }
 
     /// Half a win each way on every compared pair, shared by its two orders if both were shown: the stated penalty that

@@ -3,8 +3,10 @@
 //! Models see of a participant only how often each pair came out how. Among a hundred thousand people few such patterns
 //! are distinct, so what has to be done for everyone (gradients, resamples, leaving one out) is done for each pattern.
 
-use super::ballot::ShownBallot;
+use super::ballot::{Outcome, ShownBallot};
 use super::pairs::{Pair, Pairs};
+use rayon::prelude::*;
+use std::cmp::Ordering;
 
 /// The distinct patterns of answers, and how many participants have each.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -12,10 +14,37 @@ pub struct Participants {
     items: usize,
     /// The ordered pairs that anyone was shown, ascending.
     shown: Vec<(usize, usize)>,
-    /// By pattern, `[left, tie, right]` of each pair shown.
-    patterns: Vec<Vec<[u32; 3]>>,
+    /// Pattern after pattern, the pairs that were answered. Of a thousand items, a person answers few of a million pairs.
+    answered: Vec<AnsweredPair>,
+    /// By pattern, where it ends in `answered`.
+    ends: Vec<usize>,
     /// How many participants have each pattern; never 0.
     pub counts: Vec<u64>,
+}
+
+/// One person's answers to a pair that was shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct AnsweredPair {
+    /// The place of the pair among those shown.
+    place: u32,
+    /// Answers `[left, tie, right]`; not all 0.
+    pub(super) answers: [u32; 3],
+}
+
+impl AnsweredPair {
+    /// The place of the pair among those shown.
+    pub(super) fn place(&self) -> usize {
+        self.place as usize
+    }
+}
+
+/// The order of patterns as if each had the answers to every pair shown: to a pair that one of them leaves out, the other has more.
+fn by_every_pair(a: &[AnsweredPair], b: &[AnsweredPair]) -> Ordering {
+    let differing = a.iter().zip(b).find(|(a, b)| a != b);
+    match differing {
+        Some((a, b)) => b.place.cmp(&a.place).then(a.answers.cmp(&b.answers)),
+        None => a.len().cmp(&b.len()),
+    }
 }
 
 impl Participants {
@@ -25,26 +54,34 @@ impl Participants {
         let mut own: Vec<&ShownBallot> = ballots.iter().filter(useful).collect();
         // Files have one participant after the other: then there is nothing to sort.
         own.sort_by_key(|b| b.participant());
-        let mut shown: Vec<(usize, usize)> = Vec::new();
-        for pair in own.iter().map(|b| (b.left(), b.right())) {
-            if let Err(place) = shown.binary_search(&pair) {
-                shown.insert(place, pair);
+        let mut shown: Vec<(usize, usize)> = own.iter().map(|b| (b.left(), b.right())).collect();
+        shown.sort_unstable();
+        shown.dedup();
+        shown.shrink_to_fit();
+        let place = |b: &ShownBallot| shown.binary_search(&(b.left(), b.right())).expect("collected above");
+        let (mut all, mut everybody) = (Vec::with_capacity(own.len()), Vec::new());
+        let mut of_one: Vec<(u32, Outcome)> = Vec::new();
+        for person in own.chunk_by(|a, b| a.participant() == b.participant()) {
+            of_one.clear();
+            of_one.extend(person.iter().map(|b| (place(b) as u32, b.outcome())));
+            of_one.sort_unstable();
+            let start = all.len();
+            for of_pair in of_one.chunk_by(|a, b| a.0 == b.0) {
+                let mut answers = [0; 3];
+                of_pair.iter().for_each(|(_, outcome)| answers[outcome.index()] += 1);
+                all.push(AnsweredPair { place: of_pair[0].0, answers });
             }
+            everybody.push(start..all.len());
         }
-        let pattern = |of: &[&ShownBallot]| {
-            let mut pattern = vec![[0; 3]; shown.len()];
-            for b in of {
-                let place = shown.binary_search(&(b.left(), b.right())).expect("collected above");
-                pattern[place][b.outcome().index()] += 1;
-            }
-            pattern
-        };
-        let mut all: Vec<Vec<[u32; 3]>> =
-            own.chunk_by(|a, b| a.participant() == b.participant()).map(pattern).collect();
-        all.sort_unstable();
-        let (patterns, counts) =
-            all.chunk_by(|a, b| a == b).map(|alike| (alike[0].clone(), alike.len() as u64)).unzip();
-        Self { items, shown, patterns, counts }
+        drop(own);
+        everybody.par_sort_unstable_by(|a, b| by_every_pair(&all[a.clone()], &all[b.clone()]));
+        let (mut answered, mut ends, mut counts) = (Vec::new(), Vec::new(), Vec::new());
+        for alike in everybody.chunk_by(|a, b| all[a.clone()] == all[b.clone()]) {
+            answered.extend_from_slice(&all[alike[0].clone()]);
+            ends.push(answered.len());
+            counts.push(alike.len() as u64);
+        }
+        Self { items, shown, answered, ends, counts }
     }
 
     /// How many participants.
@@ -54,7 +91,7 @@ impl Participants {
 
     /// How many participants have a pattern of answers that nobody else has, or share: distinct patterns.
     pub fn kinds(&self) -> usize {
-        self.patterns.len()
+        self.ends.len()
     }
 
     /// How many items there are, those that nobody was shown included.
@@ -67,9 +104,14 @@ impl Participants {
         &self.shown
     }
 
-    /// Every kind: its answers `[left, tie, right]` to each pair shown, and how many participants there are of it.
-    pub(super) fn of_kinds(&self) -> impl Iterator<Item = (&[[u32; 3]], u64)> {
-        self.patterns.iter().map(Vec::as_slice).zip(self.counts.iter().copied())
+    /// Every kind: the pairs that it answered, ascending by place, and how many participants there are of it.
+    pub(super) fn of_kinds(&self) -> impl Iterator<Item = (&[AnsweredPair], u64)> {
+        (0..self.kinds()).map(|kind| (self.kind(kind), self.counts[kind]))
+    }
+
+    fn kind(&self, kind: usize) -> &[AnsweredPair] {
+        let start = kind.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.answered[start..self.ends[kind]]
     }
 
     /// The answers of one participant of a kind.
@@ -77,16 +119,19 @@ impl Participants {
     /// # Panics
     /// If there is no such kind.
     pub fn of_kind(&self, kind: usize) -> Pairs {
-        let counts = self.patterns[kind].iter().map(|counts| counts.map(f64::from));
-        self.pairs(counts)
+        let pair = |of: &AnsweredPair| {
+            let (left, right) = self.shown[of.place()];
+            Pair { left, right, answers: of.answers.map(f64::from) }
+        };
+        Pairs { items: self.items, pairs: self.kind(kind).iter().map(pair).collect() }
     }
 
     /// The answers of so many participants of each kind.
     pub fn sum(&self, weights: &[u64]) -> Pairs {
         let mut sums = vec![[0_u64; 3]; self.shown.len()];
-        for (pattern, &weight) in self.patterns.iter().zip(weights).filter(|(_, weight)| **weight > 0) {
-            for (sum, counts) in sums.iter_mut().zip(pattern) {
-                (0..3).for_each(|o| sum[o] += weight * u64::from(counts[o]));
+        for ((pattern, _), &weight) in self.of_kinds().zip(weights).filter(|(_, weight)| **weight > 0) {
+            for of in pattern {
+                (0..3).for_each(|o| sums[of.place()][o] += weight * u64::from(of.answers[o]));
             }
         }
         self.pairs(sums.into_iter().map(|counts| counts.map(|count| count as f64)))

@@ -1,10 +1,11 @@
 //! The covariance of estimates where one participant's answers hang together.
 
 use super::fit::WorthFit;
-use super::model::Layout;
+use super::model::{Layout, Touched};
 use super::newton::{Matrix, inverse, times};
 use super::pairs::Pairs;
-use super::participants::Participants;
+use super::participants::{AnsweredPair, Participants};
+use rayon::prelude::*;
 
 /// The sandwich covariance with participants as clusters: m/(m-1) H^-1 (sum of s s') H^-1, where s is one participant's
 /// gradient and H the information of the unpenalised answers (Liang and Zeger 1986, Biometrika 73:13).
@@ -30,7 +31,9 @@ impl<'a> Clusters<'a> {
     /// the sum of c c'.
     pub(super) fn of(participants: &'a Participants) -> Self {
         let size = 3 * participants.shown().len();
-        let moments = (participants.kinds() > size).then(|| moments(participants, size));
+        // Of many items nearly all moments would be zero.
+        let moments = (participants.kinds() > size && participants.items() <= DENSE)
+            .then(|| moments(participants, size));
         Self { all: participants.sum(&participants.counts), participants, moments }
     }
 
@@ -42,13 +45,25 @@ impl<'a> Clusters<'a> {
         }
         let layout = Layout::of(fit.model, &self.all, fit.given_side);
         let bread = inverse(&layout.likelihood(&self.all, &fit.parameters).information)?;
-        // A participant's gradient adds up what each answer has: few kinds of answers, many participants.
-        let of_pair = |&pair: &(usize, usize)| layout.scores(pair, &fit.parameters);
-        let influences: Vec<Vec<f64>> =
-            self.participants.shown().iter().flat_map(of_pair).map(|score| times(&bread, &score)).collect();
-        let mut covariance = match &self.moments {
-            Some(moments) => from_moments(moments, &influences, fit.parameters.len()),
-            None => from_kinds(self.participants, &influences, fit.parameters.len()),
+        let (shown, size) = (self.participants.shown(), fit.parameters.len());
+        let mut covariance = if size > DENSE {
+            from_gradients(self.participants, &layout, fit, &bread)
+        } else {
+            // A participant's gradient adds up what each answer has: few kinds of answers, many participants.
+            let of_pair = |&pair: &(usize, usize)| {
+                let (touched, scores) = layout.scores(pair, &fit.parameters);
+                scores.map(|score| {
+                    let mut full = vec![0.0; size];
+                    touched.places().iter().zip(score).for_each(|(&place, score)| full[place] = score);
+                    full
+                })
+            };
+            let influences: Vec<Vec<f64>> =
+                shown.iter().flat_map(of_pair).map(|score| times(&bread, &score)).collect();
+            match &self.moments {
+                Some(moments) => from_moments(moments, &influences, size),
+                None => from_kinds(self.participants, &influences, size),
+            }
         };
         covariance.iter_mut().flatten().for_each(|cell| *cell *= m / (m - 1.0));
         Some(covariance)
@@ -67,9 +82,57 @@ fn moments(participants: &Participants, size: usize) -> Vec<f64> {
 }
 
 /// The answers that somebody gave, and how often.
-fn given(answers: &[[u32; 3]]) -> impl Iterator<Item = (usize, f64)> {
-    let each = answers.as_flattened().iter().enumerate();
-    each.filter(|(_, times)| **times > 0).map(|(place, &times)| (place, f64::from(times)))
+fn given(answered: &[AnsweredPair]) -> impl Iterator<Item = (usize, f64)> {
+    let each = answered.iter().flat_map(|of| (0..3).map(|o| (3 * of.place() + o, of.answers[o])));
+    each.filter(|(_, times)| *times > 0).map(|(place, times)| (place, f64::from(times)))
+}
+
+/// With more parameters than this, few of which each answer touches, participants' gradients are added up and not what each of
+/// them moves: the same sums in another order.
+const DENSE: usize = 64;
+
+/// bread (sum of s s') bread, with s the gradient of one participant, which is zero for nearly all of many parameters.
+fn from_gradients(participants: &Participants, layout: &Layout, fit: &WorthFit, bread: &Matrix) -> Matrix {
+    let size = fit.parameters.len();
+    let scores: Vec<(Touched, [[f64; 4]; 3])> =
+        participants.shown().iter().map(|&pair| layout.scores(pair, &fit.parameters)).collect();
+    let mut meat = vec![vec![0.0; size]; size];
+    let mut gradient = vec![0.0; size];
+    let mut touched: Vec<usize> = Vec::new();
+    for (answered, count) in participants.of_kinds() {
+        for of in answered {
+            let (own, scores) = &scores[of.place()];
+            for (i, &place) in own.places().iter().enumerate() {
+                touched.push(place);
+                let times = of.answers.map(f64::from);
+                gradient[place] += (0..3).map(|o| times[o] * scores[o][i]).sum::<f64>();
+            }
+        }
+        touched.sort_unstable();
+        touched.dedup();
+        for (i, &row) in touched.iter().enumerate() {
+            let own = count as f64 * gradient[row];
+            touched[i..].iter().for_each(|&column| meat[row][column] += own * gradient[column]);
+        }
+        touched.drain(..).for_each(|place| gradient[place] = 0.0);
+    }
+    for row in 1..size {
+        let (above, below) = meat.split_at_mut(row);
+        below[0][..row].iter_mut().zip(above).for_each(|(cell, other)| *cell = other[row]);
+    }
+    product(&product(bread, &meat), bread)
+}
+
+/// The product of two matrices, row by row.
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let row = |row: &Vec<f64>| {
+        let mut sum = vec![0.0; b.len()];
+        for (factor, other) in row.iter().zip(b) {
+            sum.iter_mut().zip(other).for_each(|(sum, x)| *sum += factor * x);
+        }
+        sum
+    };
+    a.par_iter().map(row).collect()
 }
 
 fn from_moments(moments: &[f64], influences: &[Vec<f64>], parameters: usize) -> Matrix {

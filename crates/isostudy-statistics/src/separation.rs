@@ -52,14 +52,18 @@ pub fn separation(pairs: &Pairs) -> Separation {
 
 fn strongly_connected(items: usize, edges: &[(usize, usize)]) -> bool {
     let reaches_all = |forward: bool| {
+        let mut ends: Vec<(usize, usize)> =
+            edges.iter().map(|&(i, j)| if forward { (i, j) } else { (j, i) }).collect();
+        ends.sort_unstable();
         let mut seen = vec![false; items];
         let mut open = vec![0];
         while let Some(at) = open.pop() {
             if std::mem::replace(&mut seen[at], true) {
                 continue;
             }
-            let ends = edges.iter().map(|&(i, j)| if forward { (i, j) } else { (j, i) });
-            open.extend(ends.filter(|&(from, _)| from == at).map(|(_, to)| to));
+            let of =
+                ends.partition_point(|&(from, _)| from < at)..ends.partition_point(|&(from, _)| from <= at);
+            open.extend(ends[of].iter().map(|&(_, to)| to).filter(|&to| !seen[to]));
         }
         seen.into_iter().all(|seen| seen)
     };

@@ -1,6 +1,7 @@
 //! Can a design tell a preference for a side from a preference for an item? Known before anyone answers.
 
 use super::pairs::Pairs;
+use std::collections::HashSet;
 
 /// A side of what was shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -37,8 +38,8 @@ impl SideDesign {
 /// The side term enters each pair as l_left - l_right + delta (Davidson and Beaver 1977, Biometrics 33:693). It is
 /// confounded exactly if some l has l_left - l_right = 1 on every pair shown, which a walk over the pairs decides.
 pub fn side_design(pairs: &Pairs) -> SideDesign {
-    let shown = |left, right| pairs.pairs.iter().any(|p| p.left == left && p.right == right);
-    if pairs.pairs.iter().any(|pair| shown(pair.right, pair.left)) {
+    let shown: HashSet<(usize, usize)> = pairs.pairs.iter().map(|p| (p.left, p.right)).collect();
+    if pairs.pairs.iter().any(|pair| shown.contains(&(pair.right, pair.left))) {
         return SideDesign::Counterbalanced;
     }
     let mut height: Vec<Option<i64>> = vec![None; pairs.items];
