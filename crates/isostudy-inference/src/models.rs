@@ -6,6 +6,7 @@ use isostudy_statistics::{
     FitError, Model, Pairs, Participants, Penalty, Separation, SideDesign, WorthFit, clustered_covariance,
     fit, separation, side_design,
 };
+use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// One model of one group.
@@ -50,9 +51,10 @@ pub fn of_groups(groups: &[BallotGroup], sides_recorded: bool) -> Vec<GroupModel
         let pairs = Pairs::of(group.items.len(), &group.ballots);
         let participants = Participants::of(group.items.len(), &group.ballots);
         let plain = fit(Model::Davidson, &pairs).ok();
-        for model in Model::ALL.into_iter().filter(|&model| sides_recorded || model != Model::DavidsonSide) {
-            found.push(GroupModel::of(group, &pairs, &participants, model, plain.as_ref()));
-        }
+        let models =
+            Model::ALL.into_par_iter().filter(|&model| sides_recorded || model != Model::DavidsonSide);
+        let fitted = models.map(|model| GroupModel::of(group, &pairs, &participants, model, plain.as_ref()));
+        found.par_extend(fitted);
     }
     found
 }

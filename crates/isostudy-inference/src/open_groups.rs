@@ -13,35 +13,43 @@ use std::collections::{BTreeMap, BTreeSet};
 pub fn open_groups(answers: &Responses, reference: Option<&str>) -> Vec<BallotGroup> {
     let names = group_of_question(answers);
     let asked = |answer: &&Answer| answers.questions[answer.question as usize].is_comparison();
-    let mut members: BTreeMap<&str, BTreeSet<u32>> = BTreeMap::new();
+    // There may be millions of answers: their groups are looked up by number.
+    let known: BTreeSet<&str> = names.iter().map(String::as_str).collect();
+    let known: Vec<&str> = known.into_iter().collect();
+    let group_of: Vec<usize> =
+        names.iter().map(|name| known.binary_search(&name.as_str()).expect("collected above")).collect();
+    let mut members = vec![Vec::new(); known.len()];
     for answer in answers.answers.iter().filter(asked) {
-        members.entry(&names[answer.question as usize]).or_default().extend([answer.left, answer.right]);
+        let own: &mut Vec<bool> = &mut members[group_of[answer.question as usize]];
+        own.resize(answers.items.len(), false);
+        [answer.left, answer.right].into_iter().for_each(|item| own[item as usize] = true);
     }
     let name = |&item: &u32| answers.items[item as usize].clone();
     let objects: Vec<String> = answers.questions.iter().map(|question| question.object.clone()).collect();
-    let mut places: BTreeMap<&str, BTreeMap<u32, usize>> = BTreeMap::new();
-    let mut groups: BTreeMap<&str, BallotGroup> = BTreeMap::new();
-    for (group, items) in members {
-        let mut items: Vec<u32> = items.into_iter().collect();
+    let mut places: Vec<Vec<usize>> = Vec::new();
+    let mut groups: Vec<BallotGroup> = Vec::new();
+    for (group, own) in known.iter().zip(&members) {
+        let mut items: Vec<u32> = (0..own.len() as u32).filter(|&item| own[item as usize]).collect();
         // Stable: the others keep their order.
         items.sort_by_key(|item| Some(name(item).as_str()) != reference);
-        places.insert(group, items.iter().enumerate().map(|(place, &item)| (item, place)).collect());
-        let items = items.iter().map(name).collect();
-        groups.insert(
-            group,
-            BallotGroup { name: group.into(), items, ballots: Vec::new(), objects: objects.clone() },
-        );
+        let mut place = vec![0; own.len()];
+        items.iter().enumerate().for_each(|(at, &item)| place[item as usize] = at);
+        places.push(place);
+        let (items, objects) = (items.iter().map(name).collect(), objects.clone());
+        groups.push(BallotGroup { name: (*group).into(), items, ballots: Vec::new(), objects });
     }
     for answer in answers.answers.iter().filter(asked) {
-        let group = names[answer.question as usize].as_str();
-        let sides = [answer.left, answer.right].map(|item| places[group][&item]);
+        let group = group_of[answer.question as usize];
+        let sides = [answer.left, answer.right].map(|item| places[group][item as usize]);
         let (participant, question) = (answer.participant as usize, answer.question as usize);
         let ballot = ShownBallot::new(participant, question, sides, outcome(answer.choice));
         let ordered = answers.sides_recorded || sides[0] < sides[1];
-        let ballot = if ordered { ballot } else { turned(&ballot) };
-        groups.get_mut(group).expect("a member's group").ballots.push(ballot);
+        groups[group].ballots.push(if ordered { ballot } else { turned(&ballot) });
     }
-    groups.into_values().collect()
+    // Controls may stand alone in a group.
+    groups.retain(|group| !group.ballots.is_empty());
+    groups.iter_mut().for_each(|group| group.ballots.shrink_to_fit());
+    groups
 }
 
 /// By question, the name of its group.
