@@ -22,6 +22,7 @@ mod jobs;
 mod labels;
 mod large_volumes;
 mod left_out;
+mod many;
 mod memory;
 mod messages;
 mod named;

@@ -14,7 +14,9 @@ mod evidence_of_probes;
 mod figure;
 mod figures;
 mod frames;
+mod many;
 mod panel;
+mod parquet_text;
 pub mod region;
 pub mod report;
 mod self_test;
@@ -41,7 +43,9 @@ pub use figures::{
     history_figure, power_figure, sweep_figures,
 };
 pub use frames::{FrameError, LongFrame, answers_frame};
+pub use many::{found_in_many, many_tables, pairs_csv, report_of_many, told_of_many};
 pub use panel::{PANEL_SCHEMA, Panel, StageTime};
+pub use parquet_text::{PARQUET_MARK, ParquetError, parquet_as_csv};
 pub use report::{Report, found, found_in_groups, report, report_of_groups};
 pub use self_test::self_test_tables;
 pub use tables::benchmark::of_objects as benchmark_of_objects;

@@ -5,7 +5,9 @@ use crate::terminal::counted;
 use anyhow::{Context, Result, bail};
 use isostudy_design::Study;
 use isostudy_design::config::ResponsesSection;
-use isostudy_responses::{Kind, Mapping, Plan, Reading, Report};
+use isostudy_report::PARQUET_MARK;
+use isostudy_responses::{Kind, LARGEST_FILE, LONG_COLUMNS, Mapping, Plan, Reading, Report, normalise};
+use std::io::Read;
 use std::path::Path;
 
 /// The answers that a study names, if it names any.
@@ -27,7 +29,7 @@ pub(crate) fn of_study(study: &Study) -> Result<Option<Reading>> {
         );
     }
     input::regular(path)?;
-    Ok(Some(isostudy_responses::read(path, Some(&Plan::of_study(study)), &mapping)?))
+    Ok(Some(read(path, Some(&Plan::of_study(study)), &mapping)?))
 }
 
 /// Answers without a study.
@@ -44,7 +46,23 @@ pub(crate) fn without_study(path: &Path, section: &ResponsesSection) -> Result<(
         }
     };
     input::regular(path)?;
-    Ok((isostudy_responses::read(path, plan.as_ref(), &mapping)?, plan))
+    Ok((read(path, plan.as_ref(), &mapping)?, plan))
+}
+
+/// Reads a file of answers, which may be a Parquet file in the long format.
+fn read(path: &Path, plan: Option<&Plan>, mapping: &Mapping) -> Result<Reading> {
+    let mut mark = [0; PARQUET_MARK.len()];
+    let begins = isostudy_foreign::open(path).is_ok_and(|mut file| file.read_exact(&mut mark).is_ok());
+    if !begins || mark != PARQUET_MARK {
+        return Ok(isostudy_responses::read(path, plan, mapping)?);
+    }
+    let bytes = isostudy_foreign::bytes(path, LARGEST_FILE)?;
+    let is_wanted = |name: &str| LONG_COLUMNS.contains(&normalise(name).as_str());
+    let text =
+        isostudy_report::parquet_as_csv(bytes, is_wanted).with_context(|| path.display().to_string())?;
+    let mut reading = isostudy_responses::parse(text.as_bytes(), path, plan, mapping)?;
+    reading.report.text_rule = "Parquet".into();
+    Ok(reading)
 }
 
 /// Says on standard error how a file was read, and what was not taken as it stands.

@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::UNIX_EPOCH;
@@ -353,6 +353,21 @@ pub(crate) fn sha256_of(parts: impl IntoIterator<Item = impl AsRef<[u8]>>) -> St
     let mut digest = Sha256::new();
     parts.into_iter().for_each(|part| digest.update(part));
     hexadecimal(&digest.finalize())
+}
+
+/// The same of a file, which may be larger than memory should hold.
+///
+/// # Errors
+/// If it is no file or cannot be read. The path is named.
+pub(crate) fn sha256_of_file(path: &Path) -> Result<String> {
+    let mut file = isostudy_foreign::open(path)?;
+    let (mut digest, mut part) = (Sha256::new(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut part).with_context(|| path.display().to_string())? {
+            0 => return Ok(hexadecimal(&digest.finalize())),
+            read => digest.update(&part[..read]),
+        }
+    }
 }
 
 fn hexadecimal(bytes: &[u8]) -> String {

@@ -7,7 +7,7 @@ use isostudy_table::{Cell, Columns, Table};
 /// `worths` and `models` of every group, with every model.
 ///
 /// What a model cannot estimate has no row in `worths`, and its reason in `models`.
-pub(super) fn model_tables(found: &[GroupModel<'_>], sides_recorded: bool) -> [Table; 2] {
+pub(crate) fn model_tables(found: &[GroupModel<'_>], sides_recorded: bool) -> [Table; 2] {
     let mut tables = [worths(found), models(found)];
     if !sides_recorded {
         let note = "Side: not answerable here, because the file does not say which item was on which side.";

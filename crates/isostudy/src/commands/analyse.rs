@@ -33,6 +33,9 @@ pub(crate) struct Arguments {
     /// Folder for tables and figures [default: results/<study id>-answers, or results/<file name>-answers]; with --part, the file to write
     #[arg(long, short, value_name = "PATH")]
     out: Option<PathBuf>,
+    /// Count answers without a study as many, however few they are: factors, worths and tests of pairs alone
+    #[arg(long, conflicts_with_all = ["responses", "self_test"])]
+    many: bool,
     #[command(flatten)]
     self_test: SelfTest,
 }
@@ -66,6 +69,9 @@ fn analyse(arguments: &Arguments) -> Result<()> {
     let is_study = input.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
     if !is_study {
         return analyse_without_study(arguments, input);
+    }
+    if arguments.many {
+        bail!("--many is for answers without a study, and {} is a study", input.display());
     }
     let mut study = input::study(input)?;
     if arguments.responses.is_some() {
@@ -150,9 +156,9 @@ fn analyse_without_study(arguments: &Arguments, path: &Path) -> Result<()> {
     let out = arguments.out.clone().unwrap_or_else(folder);
     let store = Store::open(&out, false)?;
     origin::claim(&out, path)?;
-    let said = pipeline::write_without_study(path, &section, &reading, &store)?;
+    let said = pipeline::write_without_study(path, &section, &reading, arguments.many, &store)?;
     store.remove_retired()?;
-    let digest = store::sha256(&input::bytes(path)?);
+    let digest = store::sha256_of_file(path)?;
     manifest::write(
         &manifest::Origin { name: &name, sha256: digest, seed: None, inputs: Default::default() },
         &store,

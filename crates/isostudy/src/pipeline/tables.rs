@@ -7,14 +7,14 @@ use super::pictures::ShownFirst;
 use super::{Meshes, Pipeline};
 use crate::kept_answers::{self, Waiting};
 use crate::source_digests;
-use crate::store::{Inputs, Stamp, Store, Writer, sha256};
+use crate::store::{Inputs, Stamp, Store, Writer, sha256_of_file};
 use crate::terminal::counted;
 use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
 use isostudy_design::Study;
 use isostudy_design::config::ResponsesSection;
 use isostudy_inference::tally::QuestionCount;
-use isostudy_inference::{Answered, Preferences, Results};
+use isostudy_inference::{Answered, BallotGroup, Many, Preferences, Results};
 use isostudy_paper::Paper;
 use isostudy_report::{Figure, LongFrame, OVERVIEW, Report};
 use isostudy_responses::Reading;
@@ -105,17 +105,21 @@ pub(crate) fn write_without_study(
     path: &Path,
     section: &ResponsesSection,
     reading: &Reading,
+    always_many: bool,
     store: &Store,
 ) -> Result<Said> {
-    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
     let inputs = Inputs::of_sources(source_digests::TABLES)
         .value("mapping", section)
-        .text("responses", &sha256(&bytes));
+        .value("many", &always_many)
+        .text("responses", &sha256_of_file(path)?);
     let items = &reading.responses.items;
     if let Some(reference) = section.reference.as_ref().filter(|reference| !items.contains(reference)) {
         anyhow::bail!("reference = {reference:?}: no item has this name; there are {}", items.join(", "));
     }
     let groups = isostudy_inference::open_groups(&reading.responses, section.reference.as_deref());
+    if always_many || isostudy_inference::is_many(&reading.responses, &groups) {
+        return write_many(path, reading, &groups, inputs, store);
+    }
     let preferences = Preferences::without_study(&reading.responses, &groups, section.shown_s);
     let tables = isostudy_report::answer_tables(&preferences);
     let title = path.file_name().unwrap_or_default().to_string_lossy();
@@ -130,6 +134,29 @@ pub(crate) fn write_without_study(
         write_report(writer, &report, overview.as_ref(), (&[], None), false)
     })?;
     Ok(Said { found: isostudy_report::found_in_groups(&preferences), tables })
+}
+
+/// Tables and report of more answers, or about more items, than everything is computed for.
+fn write_many(
+    path: &Path,
+    reading: &Reading,
+    groups: &[BallotGroup],
+    inputs: Inputs,
+    store: &Store,
+) -> Result<Said> {
+    let responses = &reading.responses;
+    let many = Many::of(groups, responses.sides_recorded);
+    let tables = isostudy_report::many_tables(&many, responses.sides_recorded);
+    let title = path.file_name().unwrap_or_default().to_string_lossy();
+    store.stage("answers", inputs, |writer| {
+        writer.write(READING, reading.report.to_csv().as_bytes())?;
+        writer.write("tables/pairs.csv", isostudy_report::pairs_csv(&many).as_bytes())?;
+        write_tables(writer, &tables)?;
+        let report = isostudy_report::report_of_many(&title, &many, &tables, responses.assumptions());
+        write_report(writer, &report, None, (&[], None), false)
+    })?;
+    tell!("{}", isostudy_report::told_of_many(&many));
+    Ok(Said { found: Some(isostudy_report::found_in_many(&many)), tables })
 }
 
 /// What the page needs to know of a table: `tables/contents.json` lists these.
@@ -294,8 +321,7 @@ pub(super) fn study_inputs(study: &Study) -> Result<Inputs> {
         .value("preferences", &published.preferences)
         .value("claims", &published.claims);
     if let Some(path) = &study.responses {
-        let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
-        inputs = inputs.text("responses", &sha256(&bytes));
+        inputs = inputs.text("responses", &sha256_of_file(path)?);
     }
     Ok(inputs)
 }
