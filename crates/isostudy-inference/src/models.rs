@@ -50,10 +50,10 @@ pub fn of_groups(groups: &[BallotGroup], sides_recorded: bool) -> Vec<GroupModel
     for group in groups {
         let pairs = Pairs::of(group.items.len(), &group.ballots);
         let participants = Participants::of(group.items.len(), &group.ballots);
-        let plain = fit(Model::Davidson, &pairs).ok();
+        let plain = fit(Model::Davidson, &pairs);
         let models =
             Model::ALL.into_par_iter().filter(|&model| sides_recorded || model != Model::DavidsonSide);
-        let fitted = models.map(|model| GroupModel::of(group, &pairs, &participants, model, plain.as_ref()));
+        let fitted = models.map(|model| GroupModel::of(group, &pairs, &participants, model, &plain));
         found.par_extend(fitted);
     }
     found
@@ -66,9 +66,10 @@ impl<'a> GroupModel<'a> {
         pairs: &Pairs,
         participants: &Participants,
         model: Model,
-        plain: Option<&WorthFit>,
+        plain: &Result<WorthFit, FitError>,
     ) -> Self {
-        let fitted = fit(model, pairs);
+        let fitted = if model == Model::Davidson { plain.clone() } else { fit(model, pairs) };
+        let plain = plain.as_ref().ok();
         let of = fitted.as_ref().ok();
         // Without a bound there is nothing to estimate, whatever half a win makes of it.
         let side = of.filter(|fit| fit.penalty != Penalty::SideSeparated);

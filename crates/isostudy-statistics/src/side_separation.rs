@@ -3,6 +3,7 @@
 use super::pairs::Pairs;
 use super::separation::{Separation, separation};
 use super::side::{Side, SideDesign, side_design};
+use std::collections::HashMap;
 
 /// The side that the answers like beyond any bound: the model with a side has no maximum, and it is the side's doing, since
 /// without it there is one. `None` where the side has an estimate, where items are to blame ([`separation`]), and where
@@ -46,6 +47,9 @@ struct Step {
 
 struct Steps(Vec<Step>);
 
+/// More steps than this are searched for the shortest circles first.
+const FEW_STEPS: usize = 10_000;
+
 /// A circle of answers that forbids a d: a d + b < 0.
 struct Circle {
     a: i64,
@@ -76,6 +80,13 @@ impl Steps {
             Tie::Within if step.win => -1,
             Tie::Within => 1,
         };
+        let cost = |step: &Step| p * step.side + q * constant(step);
+        if self.0.len() > FEW_STEPS
+            && let Some([there, back]) = self.there_and_back(cost)
+        {
+            let (a, b) = (there.side + back.side, constant(there) + constant(back));
+            return Some(Circle { a, b });
+        }
         let mut height = vec![0_i64; items];
         let mut last: Vec<Option<usize>> = vec![None; items];
         let mut moved = None;
@@ -104,6 +115,23 @@ impl Steps {
                 return Some(circle);
             }
         }
+    }
+
+    /// Two steps, from an item to another and back, that cost less than nothing. Of many answers some are such a circle, and to look
+    /// for longer ones takes as many rounds as there are items.
+    fn there_and_back(&self, cost: impl Fn(&Step) -> i64) -> Option<[&Step; 2]> {
+        let mut cheapest: HashMap<(usize, usize), &Step> = HashMap::new();
+        for step in &self.0 {
+            let known = cheapest.entry((step.from, step.to)).or_insert(step);
+            if cost(step) < cost(known) {
+                *known = step;
+            }
+        }
+        self.0.iter().find_map(|step| {
+            let there = *cheapest.get(&(step.from, step.to))?;
+            let back = *cheapest.get(&(step.to, step.from))?;
+            (cost(there) + cost(back) < 0).then_some([there, back])
+        })
     }
 
     /// The sign of a d that is allowed with 2 tau = 1.
@@ -151,6 +179,21 @@ mod tests {
         let three =
             [(0, 1, [9, 0, 0]), (1, 0, [8, 0, 1]), (0, 2, [9, 0, 0]), (2, 0, [9, 0, 0]), (1, 2, [5, 0, 0])];
         assert_eq!(judged(3, &three), Some(Side::Left));
+    }
+
+    #[test]
+    fn many_answers_are_judged_as_few() {
+        let all = |answers: [u8; 3]| {
+            let pairs: Vec<(usize, usize, [u8; 3])> = (0..120)
+                .flat_map(|i| (0..120).filter(move |&j| j != i).map(move |j| (i, j, answers)))
+                .collect();
+            assert!(3 * pairs.len() > FEW_STEPS);
+            judged(120, &pairs)
+        };
+        assert_eq!(all([9, 1, 0]), Some(Side::Left));
+        assert_eq!(all([0, 1, 9]), Some(Side::Right));
+        assert_eq!(all([9, 0, 0]), Some(Side::Left));
+        assert_eq!(all([9, 1, 2]), None);
     }
 
     #[test]
