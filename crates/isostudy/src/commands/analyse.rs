@@ -156,7 +156,7 @@ fn analyse_without_study(arguments: &Arguments, path: &Path) -> Result<()> {
     let out = arguments.out.clone().unwrap_or_else(folder);
     let store = Store::open(&out, false)?;
     origin::claim(&out, path)?;
-    let said = pipeline::write_without_study(path, &section, &reading, arguments.many, &store)?;
+    let said = pipeline::write_without_study(path, &section, reading, arguments.many, &store)?;
     store.remove_retired()?;
     let digest = store::sha256_of_file(path)?;
     manifest::write(

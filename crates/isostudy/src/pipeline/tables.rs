@@ -104,7 +104,7 @@ pub(crate) struct Said {
 pub(crate) fn write_without_study(
     path: &Path,
     section: &ResponsesSection,
-    reading: &Reading,
+    mut reading: Reading,
     always_many: bool,
     store: &Store,
 ) -> Result<Said> {
@@ -118,7 +118,10 @@ pub(crate) fn write_without_study(
     }
     let groups = isostudy_inference::open_groups(&reading.responses, section.reference.as_deref());
     if always_many || isostudy_inference::is_many(&reading.responses, &groups) {
-        return write_many(path, reading, &groups, inputs, store);
+        // They are in the groups now, and there may be millions.
+        reading.responses.answers = Vec::new();
+        reading.responses.participants = Vec::new();
+        return write_many(path, &reading, &groups, inputs, store);
     }
     let preferences = Preferences::without_study(&reading.responses, &groups, section.shown_s);
     let tables = isostudy_report::answer_tables(&preferences);
