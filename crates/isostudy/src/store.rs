@@ -165,12 +165,13 @@ impl Store {
     /// If it cannot be read, or has other bytes: then somebody else works on the folder.
     pub(crate) fn read(&self, stamp: &Stamp, ending: &str) -> Result<Vec<u8>> {
         let path = stamp.file(ending);
-        let bytes = crate::input::bytes(&self.root.join(path))?;
+        let full = self.root.join(path);
+        let bytes = fs::read(&full).with_context(|| full.display().to_string())?;
         let is_whole = stamp.files.iter().any(|file| file.path == path && file.sha256 == sha256(&bytes));
         if !is_whole {
             bail!(
                 "{}: it was changed while it was read. Another study, or an earlier form of this one, works on this folder",
-                self.root.join(path).display()
+                full.display()
             );
         }
         Ok(bytes)
