@@ -1,6 +1,6 @@
 //! Does the analysis find what is there, and nothing else? Tried on simulated studies whose truth is known.
 //!
-//! [`probes`] plants one defect at a time and counts which [probes](crate::audit) speak up; [`rates`] counts how often tests
+//! One half plants one defect at a time and counts which [probes](crate::audit) speak up. The other counts how often tests
 //! reject what is true and how often intervals cover it. Study s draws from its own stream of the seed, and only whole
 //! numbers are added up: the same seed gives the same counts on any number of threads, and in any number of [parts](Part).
 
