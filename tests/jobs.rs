@@ -201,6 +201,59 @@ fn what_fails_as_a_job_is_left_out_of_the_report() {
     assert_eq!(differ, ["manifest.json"; 2], "it lists those files as well");
 }
 
+/// A program that somebody killed may do better another time: the job fails, and nothing is left out. One that ends badly by itself does
+/// so again.
+#[test]
+fn a_program_that_was_killed_is_tried_again_and_one_that_fails_is_left_out() {
+    let folder = Folder::new();
+    folder.write("cpu.toml", include_str!("../configs/cpu/x86-64-v3.toml"));
+    let program = "{ kind = \"program\", command = [\"python3\", \"./p.py\"] }";
+    let study = include_str!("left_out/fronts.toml").replace("{ kind = \"advancing-front\" }", program);
+    assert!(study.contains(program));
+    folder.write("study.toml", study);
+    let job = || {
+        let id = "mesh/benchmark/ba_front";
+        folder.run(&["job", "study.toml", "--out", "out", "--allow-programs", id])
+    };
+    let why = folder.path("out/failed/mesh.benchmark.ba_front.json");
+    folder.write("p.py", "import os\nos.kill(os.getpid(), 9)\n");
+    for _ in 0..2 {
+        let killed = job();
+        assert!(killed.code == Some(2) && killed.stderr.contains("signal 9"), "{}", killed.stderr);
+        assert!(!why.exists());
+    }
+    folder.write("p.py", "raise SystemExit(3)\n");
+    let failed = job();
+    assert!(failed.code == Some(0) && failed.stderr.contains("left out: ba_front: "), "{}", failed.stderr);
+    assert!(fs::read_to_string(&why).unwrap().contains("ended with code 3"));
+}
+
+/// A file that is no longer what its stamp says is not read as if it were.
+#[test]
+fn what_is_changed_behind_a_jobs_back_is_done_again() {
+    let fixture = Fixture::new();
+    let (mesh, turntable) = ("mesh/stimulus/ss_bi", "turntable/ss_bi");
+    fixture.succeed("job", &[mesh, turntable]);
+    let gif = || {
+        let all = files(fixture.out());
+        let (_, bytes) = all.into_iter().find(|(path, _)| path.ends_with(".gif")).unwrap();
+        bytes
+    };
+    let before = gif();
+    // Another mesh in its place, as a straggler of an older plan would leave it.
+    let ply = fixture.out().join("meshes/stimulus/ss_bi.ply");
+    fixture.succeed("job", &["mesh/stimulus/ss_bu"]);
+    fs::copy(fixture.out().join("meshes/stimulus/ss_bu.ply"), &ply).unwrap();
+    let run = fixture.run("job", &[turntable]);
+    assert!(
+        run.code == Some(2) && run.stderr.contains(&format!("{mesh} is not up to date")),
+        "{}",
+        run.stderr
+    );
+    fixture.succeed("job", &[mesh, turntable]);
+    assert!(gif() == before);
+}
+
 /// The quick study on engines that clusters have, on this machine; told where their packages cannot be had.
 #[test]
 fn snakemake_and_hyperqueue_make_the_same_files() {
