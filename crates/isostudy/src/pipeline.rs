@@ -33,7 +33,7 @@ mod worker;
 pub(crate) use ab::AbChoice;
 use accuracies::Accuracies;
 pub(crate) use bundle::forms_digest;
-pub(crate) use jobs::{Planned, summary};
+pub(crate) use jobs::{Planned, REPORT, by_kind};
 pub(crate) use meshes::Meshes;
 pub(crate) use stimuli::MadeWith;
 pub(crate) use tables::{Said, write_answers_only, write_without_study};

@@ -165,10 +165,18 @@ impl Store {
     /// If it cannot be read, or has other bytes: then somebody else works on the folder.
     pub(crate) fn read(&self, stamp: &Stamp, ending: &str) -> Result<Vec<u8>> {
         let path = stamp.file(ending);
-        let full = self.root.join(path);
+        let file = stamp.files.iter().find(|file| file.path == path).context("a file of the stage")?;
+        self.read_file(file)
+    }
+
+    /// The same of one file.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub(crate) fn read_file(&self, file: &FileStamp) -> Result<Vec<u8>> {
+        let full = self.root.join(&file.path);
         let bytes = fs::read(&full).with_context(|| full.display().to_string())?;
-        let is_whole = stamp.files.iter().any(|file| file.path == path && file.sha256 == sha256(&bytes));
-        if !is_whole {
+        if file.sha256 != sha256(&bytes) {
             bail!(
                 "{}: it was changed while it was read. Another study, or an earlier form of this one, works on this folder",
                 full.display()

@@ -3,15 +3,12 @@
 use super::checked_study;
 use super::study_run::{Run, default_folder, with_page};
 use crate::outcome::Outcome;
-use crate::pipeline::Pipeline;
+use crate::pipeline::{Pipeline, REPORT};
 use crate::store::Store;
 use crate::terminal::counted;
 use crate::{consent, origin, recipe};
 use anyhow::{Result, bail};
 use clap::Args;
-
-/// The job that takes the whole folder.
-const REPORT: &str = "report";
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -44,13 +41,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             counted(ids.len() as u64, "job")
         );
     }
-    let checked = || ids.iter().zip(digests);
     if ids.iter().any(|id| id == REPORT) {
         if ids.len() > 1 {
             bail!("{REPORT}: it takes the whole folder, and is the only job of a command");
         }
         return with_page(run, |pipeline| {
-            checked().try_for_each(|(id, digest)| pipeline.check_digest(id, digest))?;
+            pipeline.check_digests(ids, digests)?;
             pipeline.report()
         });
     }
@@ -65,7 +61,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let store = Store::open_beside(&out, run.force)?;
     origin::claim(&out, &study.path)?;
     let mut pipeline = Pipeline::new(&study, store, threads);
-    checked().try_for_each(|(id, digest)| pipeline.check_digest(id, digest))?;
+    pipeline.check_digests(ids, digests)?;
     for id in ids {
         if let Some(why) = pipeline.job(id)? {
             tell!("left out: {why}");

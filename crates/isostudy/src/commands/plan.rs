@@ -3,7 +3,7 @@
 use super::checked_study;
 use super::study_run::default_folder;
 use crate::outcome::Outcome;
-use crate::pipeline::{Pipeline, Planned, summary};
+use crate::pipeline::{Pipeline, Planned, by_kind};
 use crate::store::{Store, sha256};
 use crate::terminal::{counted, say};
 use crate::{input, recipe};
@@ -54,8 +54,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         say(&serde_json::to_string_pretty(&plan)?)?;
         return Ok(Outcome::Done);
     }
-    for (kind, of_kind, seconds) in summary(&jobs) {
-        say(&format!("{kind:<12} {}, about {seconds:.0} s on one core", counted(of_kind as u64, "job")))?;
+    for (kind, of) in by_kind(&jobs) {
+        let known = counted(of.jobs - of.unknown, "job");
+        let unknown = format!("{} of unknown time", counted(of.unknown, "job"));
+        let said = match (of.jobs - of.unknown, of.unknown) {
+            (0, _) => unknown,
+            (_, 0) => format!("{known}, about {:.0} s on one core", of.seconds),
+            _ => format!("{known}, about {:.0} s on one core, and {unknown}", of.seconds),
+        };
+        say(&format!("{kind:<12} {said}"))?;
     }
     say(&format!("{} in all; --json lists them", counted(jobs.len() as u64, "job")))?;
     Ok(Outcome::Done)

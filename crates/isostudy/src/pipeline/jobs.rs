@@ -27,7 +27,7 @@ use std::collections::BTreeMap;
 use std::sync::PoisonError;
 
 /// The job that makes tables, figures and pages of all the others.
-const REPORT: &str = "report";
+pub(crate) const REPORT: &str = "report";
 /// What a process takes beside the grid, the volume and the mesh.
 const PROCESS_BYTES: f64 = 96.0 * 1024.0 * 1024.0;
 /// How often a mesh is in memory while it is measured: itself, trees over it, and the points of its surface.
@@ -129,28 +129,37 @@ impl<'a> Pipeline<'a> {
     /// If a recipe, a field or a file that the study names cannot be read.
     pub(crate) fn planned(&self) -> Result<Vec<Planned>> {
         let jobs = self.jobs()?;
-        let may_fail = self.may_fail()?;
         let mut costs = Trials::new(self.study);
-        let mut planned: Vec<Planned> = Vec::new();
-        for (place, job) in jobs.iter().enumerate() {
-            let needs: Vec<usize> = (0..place).filter(|&other| job.needs(&jobs[other], &may_fail)).collect();
-            let mut digest = Inputs::default().text("job", &self.own_inputs(job)?.finish());
-            for &other in &needs {
-                digest = digest.text(&planned[other].id, &planned[other].digest);
-            }
+        let mut planned = Vec::new();
+        for (job, (needs, digest)) in jobs.iter().zip(self.needs_and_digests(&jobs)?) {
             let (expected_s, expected_bytes) = self.cost(job, &mut costs)?;
             planned.push(Planned {
                 id: job.id(self.study),
                 kind: job.kind(),
-                needs: needs.iter().map(|&other| planned[other].id.clone()).collect(),
+                needs: needs.iter().map(|&other| jobs[other].id(self.study)).collect(),
                 outputs: self.outputs(job),
-                digest: digest.finish(),
+                digest,
                 exclusive: job.kind() == "timing",
                 expected_s,
                 expected_bytes,
             });
         }
         Ok(planned)
+    }
+
+    /// Of each job the places of those that it needs, which are before it, and its digest.
+    fn needs_and_digests(&self, jobs: &[Job<'_>]) -> Result<Vec<(Vec<usize>, String)>> {
+        let may_fail = self.may_fail()?;
+        let mut found: Vec<(Vec<usize>, String)> = Vec::new();
+        for (place, job) in jobs.iter().enumerate() {
+            let needs: Vec<usize> = (0..place).filter(|&other| job.needs(&jobs[other], &may_fail)).collect();
+            let mut digest = Inputs::default().text("job", &self.own_inputs(job)?.finish());
+            for &other in &needs {
+                digest = digest.text(&jobs[other].id(self.study), &found[other].1);
+            }
+            found.push((needs, digest.finish()));
+        }
+        Ok(found)
     }
 
     /// Does one job and nothing else; it is not done again where it is up to date. Returns why what it makes is left out, where a
@@ -167,30 +176,27 @@ impl<'a> Pipeline<'a> {
         Ok(left_out.into_iter().next().map(|(of, why)| format!("{of}: {why}")))
     }
 
-    /// Checks that a job still has the digest that a plan gave it.
+    /// Checks that jobs still have the digests that a plan gave them.
     ///
     /// # Errors
-    /// If it has another; if the study has no such job.
-    pub(crate) fn check_digest(&self, id: &str, digest: &str) -> Result<()> {
+    /// The first that has another; if the study has no such job.
+    pub(crate) fn check_digests(&self, ids: &[String], digests: &[String]) -> Result<()> {
+        if digests.is_empty() {
+            return Ok(());
+        }
         let jobs = self.jobs()?;
-        let now = self.digest(&jobs, place(self.study, &jobs, id)?, &self.may_fail()?)?;
-        if now != digest {
-            bail!(
-                "{id}: {} or a file that it names has changed since the plan was made: the job's digest is {now}, and no longer {digest}. \
-                 Make the plan again",
-                self.study.path.display()
-            );
+        let known = self.needs_and_digests(&jobs)?;
+        for (id, digest) in ids.iter().zip(digests) {
+            let (_, now) = &known[place(self.study, &jobs, id)?];
+            if now != digest {
+                bail!(
+                    "{id}: {} or a file that it names has changed since the plan was made: the job's digest is {now}, and no longer \
+                     {digest}. Make the plan again",
+                    self.study.path.display()
+                );
+            }
         }
         Ok(())
-    }
-
-    /// A job's digest alone.
-    fn digest(&self, jobs: &[Job<'_>], place: usize, may_fail: &[&Configuration]) -> Result<String> {
-        let mut digest = Inputs::default().text("job", &self.own_inputs(&jobs[place])?.finish());
-        for other in (0..place).filter(|&other| jobs[place].needs(&jobs[other], may_fail)) {
-            digest = digest.text(&jobs[other].id(self.study), &self.digest(jobs, other, may_fail)?);
-        }
-        Ok(digest.finish())
     }
 
     /// All jobs, in the order in which one run does them.
@@ -491,12 +497,24 @@ fn place(study: &Study, jobs: &[Job<'_>], id: &str) -> Result<usize> {
     })
 }
 
-/// How many jobs of each kind there are, and what they are expected to take: for people.
-pub(crate) fn summary(planned: &[Planned]) -> Vec<(&'static str, usize, f64)> {
-    let mut kinds: BTreeMap<&'static str, (usize, f64)> = BTreeMap::new();
+/// Jobs of one kind.
+#[derive(Debug, Default)]
+pub(crate) struct OfKind {
+    pub(crate) jobs: u64,
+    /// What those are expected to take of which it is known.
+    pub(crate) seconds: f64,
+    /// How many it is not known of.
+    pub(crate) unknown: u64,
+}
+
+/// The jobs of each kind together.
+pub(crate) fn by_kind(planned: &[Planned]) -> BTreeMap<&'static str, OfKind> {
+    let mut kinds: BTreeMap<&'static str, OfKind> = BTreeMap::new();
     for job in planned {
         let of = kinds.entry(job.kind).or_default();
-        *of = (of.0 + 1, of.1 + job.expected_s.unwrap_or(0.0));
+        of.jobs += 1;
+        of.seconds += job.expected_s.unwrap_or(0.0);
+        of.unknown += u64::from(job.expected_s.is_none());
     }
-    kinds.into_iter().map(|(kind, (jobs, seconds))| (kind, jobs, seconds)).collect()
+    kinds
 }

@@ -92,8 +92,7 @@ impl Pipeline<'_> {
     /// The records of stages of [`timed_apart`](Self::timed_apart).
     pub(super) fn times_apart<T: DeserializeOwned>(&self, stamps: &[Stamp]) -> Result<Vec<T>> {
         let read = |file: &FileStamp| {
-            let text =
-                std::fs::read(self.store.root().join(&file.path)).with_context(|| file.path.clone())?;
+            let text = self.store.read_file(file)?;
             serde_json::from_slice(&text).with_context(|| file.path.clone())
         };
         stamps.iter().flat_map(|stamp| &stamp.files).map(read).collect()
