@@ -7,8 +7,10 @@ mod analysis;
 mod field;
 mod forms;
 mod methods;
+mod objects;
 mod pictures;
 mod responses;
+mod sweep;
 mod viewer;
 
 pub use crate::method::{BudgetSection, Quantity, StimulusLook};
@@ -16,8 +18,11 @@ pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
 pub use field::{FieldSection, Inside, MeshSourceSection, PointKernel, PointNormals};
 pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
 pub use methods::{FactorSection, LevelSection, MethodSection, SpeltLevel};
+pub(crate) use objects::check_objects;
+pub use objects::{CameraSection, ObjectSection, RegionSection};
 pub use pictures::{LightFollows, Look, ShadingSection, StillSection, TurntableSection};
 pub use responses::{PairSection, ResponsesSection, SynonymsSection};
+pub use sweep::{Combine, RangeSection, Scale, SettingSection, SweepSection};
 pub use viewer::ViewerSection;
 
 use crate::method::{Arrangement, Clustering, ConfigurationId, MethodId};
@@ -65,6 +70,9 @@ pub struct StudyFile {
     pub viewer: Option<ViewerSection>,
     /// What is timed, and how often.
     pub benchmark: BenchmarkSection,
+    /// Resolutions and settings that are tried beyond objects and methods as they stand; leave out for a study without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sweep: Option<SweepSection>,
     /// The questions: what is shown on which side; none for a study of meshes and times alone.
     #[serde(default)]
     pub comparisons: Vec<ComparisonSection>,
@@ -111,62 +119,6 @@ impl LimitsSection {
     pub const HOURS: f64 = 1.0;
 }
 
-/// One object of the study.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ObjectSection {
-    /// Short id, the first half of a configuration's id.
-    pub id: String,
-    /// Name in tables and figures.
-    pub name: String,
-    /// The scalar field.
-    pub field: FieldSection,
-    /// Value at which the surface lies; inside is above it.
-    pub isovalue: f64,
-    /// Smallest corner of the sampled volume.
-    pub min: [f64; 3],
-    /// Largest corner of the sampled volume.
-    pub max: [f64; 3],
-    /// Cube edge in the benchmark.
-    pub benchmark_spacing: f64,
-    /// Cube edge of the meshes in the animations.
-    pub stimulus_spacing: f64,
-    /// The camera for this object.
-    pub camera: CameraSection,
-    /// The part of the surface that is judged; the whole of it if there is none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub region: Option<RegionSection>,
-}
-
-/// A box in which an object's surface is judged: measures of meshes are given for it alone, beside those of the whole.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RegionSection {
-    /// What it is called in headings and captions: `of the NAME alone`.
-    pub name: String,
-    /// Smallest corner.
-    pub min: [f64; 3],
-    /// Largest corner.
-    pub max: [f64; 3],
-}
-
-/// The camera for one object.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CameraSection {
-    /// The paper's distance parameter D; the eye is about 1.323 D from the middle of the picture.
-    pub distance: f64,
-    /// Vertical field of view in radians.
-    pub vertical_fov_rad: f64,
-    /// How high over the origin the middle of the picture lies. One that is left out is not written: digests stay as they are.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub middle_z: f64,
-}
-
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
-
 /// How stimuli are made from turntables.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -209,14 +161,17 @@ pub struct BenchmarkSection {
     pub memory: bool,
     /// TOML file that describes the CPU the numbers are meant for.
     pub target: String,
+    /// What other machines are called that measure the study too; each is a job of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub machines: Vec<String>,
     /// What `isostudy bench sweep` measures; leave out for a study that sweeps nothing.
-    pub sweep: Option<SweepSection>,
+    pub sweep: Option<ThreadSweepSection>,
 }
 
 /// Resolutions and thread counts, each of which is measured with each.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SweepSection {
+pub struct ThreadSweepSection {
     /// Ids of the objects.
     pub objects: Vec<String>,
     /// Cells along the longest axis of an object's volume, ascending.

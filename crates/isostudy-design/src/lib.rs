@@ -22,6 +22,7 @@ pub mod published;
 mod read;
 pub mod record;
 mod study;
+pub mod sweep;
 pub mod wording;
 
 pub use check::ConfigError;

@@ -5,13 +5,13 @@ mod methods;
 
 use crate::check::{Checker, ConfigError};
 use crate::code_names;
-use crate::config::{ResponsesSection, StudyFile};
+use crate::config::{ResponsesSection, StudyFile, check_objects};
 use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, Method};
 use crate::read::{parse_toml, read_table};
 use crate::study::{Comparison, Configuration, Group, Published, Study};
 use crate::wording::did_you_mean;
-use checks::{check_forms, check_objects, check_primary, check_reference, check_sections, check_stills};
+use checks::{check_forms, check_primary, check_reference, check_sections, check_stills};
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -95,6 +95,7 @@ impl Study {
         };
         check_primary(&checker, &study)?;
         check_reference(&checker, &study)?;
+        crate::sweep::check(&checker, &study)?;
         Ok(study)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::configuration;
 use crate::check::{Checker, ConfigError, short};
-use crate::config::{FieldSection, ObjectSection, RegionSection, StudyFile, SweepSection};
+use crate::config::{StudyFile, ThreadSweepSection};
 use crate::contrast::contrasts;
 use crate::method::is_summed;
 use crate::study::{Configuration, Study};
@@ -77,6 +77,17 @@ pub(super) fn check_sections(c: &Checker<'_>, file: &StudyFile) -> Result<(), Co
     c.count("benchmark.aa_iterations", b.aa_iterations, 0, 100_000)?;
     c.count("benchmark.threads", b.threads, 0, 1024)?;
     c.count("benchmark.chunks", b.chunks, 0, 1024)?;
+    for (i, machine) in b.machines.iter().enumerate() {
+        if machine.is_empty() || machine.len() > 32 || !machine.bytes().all(plain) {
+            let limit = "must be 1 to 32 lower-case letters, digits or hyphens";
+            return c.refuse(format!("benchmark.machines[{i}]"), machine, limit);
+        }
+    }
+    c.distinct(|i| format!("benchmark.machines[{i}]"), &b.machines)?;
+    if !b.machines.is_empty() && b.aa_iterations == 0 {
+        let limit = "benchmark.machines needs a noise floor for each machine: must be at least 1";
+        return c.refuse("benchmark.aa_iterations", b.aa_iterations, limit);
+    }
     b.sweep.as_ref().map_or(Ok(()), |sweep| check_sweep(c, file, sweep))
 }
 
@@ -100,7 +111,7 @@ fn check_arrangements(c: &Checker<'_>, file: &StudyFile) -> Result<(), ConfigErr
     Ok(())
 }
 
-fn check_sweep(c: &Checker<'_>, file: &StudyFile, sweep: &SweepSection) -> Result<(), ConfigError> {
+fn check_sweep(c: &Checker<'_>, file: &StudyFile, sweep: &ThreadSweepSection) -> Result<(), ConfigError> {
     let known: Vec<&str> = file.objects.iter().map(|object| object.id.as_str()).collect();
     if sweep.objects.is_empty() {
         return c.refuse("benchmark.sweep.objects", "[]", "must list at least one object");
@@ -127,123 +138,6 @@ fn check_sweep(c: &Checker<'_>, file: &StudyFile, sweep: &SweepSection) -> Resul
         }
     }
     c.count("benchmark.sweep.iterations", sweep.iterations, 1, 100_000)
-}
-
-pub(super) fn check_objects(c: &Checker<'_>, objects: &[ObjectSection]) -> Result<(), ConfigError> {
-    if objects.is_empty() {
-        return c.refuse("objects", "[]", "must list at least one object");
-    }
-    let ids: Vec<String> = objects.iter().map(|o| o.id.clone()).collect();
-    c.distinct(|i| format!("objects[{i}].id"), &ids)?;
-    for (i, object) in objects.iter().enumerate() {
-        let key = |name: &str| format!("objects[{i}].{name}");
-        if object.id.is_empty() || !object.id.bytes().all(|b| b.is_ascii_alphanumeric()) {
-            return c.refuse(key("id"), &object.id, "must be letters and digits");
-        }
-        c.number(&key("isovalue"), object.isovalue, -1e9, 1e9)?;
-        c.numbers(&key("min"), &object.min, -1e6, 1e6)?;
-        c.numbers(&key("max"), &object.max, -1e6, 1e6)?;
-        for axis in 0..3 {
-            let (min, max) = (object.min[axis], object.max[axis]);
-            // Volumes are single precision.
-            if max as f32 <= min as f32 {
-                let by = if max > min { " by more than single precision loses" } else { "" };
-                let limit = format!("must be above {} = {}{by}", key("min"), short(min));
-                return c.refuse(format!("{}[{axis}]", key("max")), short(max), limit);
-            }
-        }
-        c.length(&key("benchmark_spacing"), object.benchmark_spacing, 1e6)?;
-        c.length(&key("stimulus_spacing"), object.stimulus_spacing, 1e6)?;
-        c.positive(&key("camera.distance"), object.camera.distance, 1e6)?;
-        c.number(&key("camera.middle_z"), object.camera.middle_z, -1e6, 1e6)?;
-        c.number(&key("camera.vertical_fov_rad"), object.camera.vertical_fov_rad, 0.01, 3.1)?;
-        if let Some(region) = &object.region {
-            check_region(c, &key("region"), object, region)?;
-        }
-        check_field(c, &key("field"), &object.field)?;
-    }
-    Ok(())
-}
-
-/// A region is a box that meets the object's volume.
-fn check_region(
-    c: &Checker<'_>,
-    key: &str,
-    object: &ObjectSection,
-    region: &RegionSection,
-) -> Result<(), ConfigError> {
-    if region.name.trim().is_empty() {
-        return c.refuse(format!("{key}.name"), &region.name, "must be a name");
-    }
-    c.numbers(&format!("{key}.min"), &region.min, -1e6, 1e6)?;
-    c.numbers(&format!("{key}.max"), &region.max, -1e6, 1e6)?;
-    for axis in 0..3 {
-        let (min, max) = (region.min[axis], region.max[axis]);
-        if max as f32 <= min as f32 {
-            let limit = format!("must be above {key}.min = {}", short(min));
-            return c.refuse(format!("{key}.max[{axis}]"), short(max), limit);
-        }
-        let volume = [object.min[axis], object.max[axis]];
-        if max <= volume[0] || min >= volume[1] {
-            let limit =
-                format!("must meet the object's volume, {} to {}", short(volume[0]), short(volume[1]));
-            return c.refuse(format!("{key}.max[{axis}]"), short(max), limit);
-        }
-    }
-    Ok(())
-}
-
-fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), ConfigError> {
-    match field {
-        FieldSection::Sphere { radius } => c.length(&format!("{key}.radius"), *radius, 1e6),
-        FieldSection::Asteroid {} => Ok(()),
-        FieldSection::Mesh { file, sources, .. } => {
-            for (i, source) in sources.iter().enumerate() {
-                let key = |name: &str| format!("{key}.sources[{i}].{name}");
-                let mut letters: Vec<&str> =
-                    source.axes.iter().map(|axis| axis.strip_prefix('-').unwrap_or(axis)).collect();
-                letters.sort_unstable();
-                if letters != ["x", "y", "z"] {
-                    let limit = "must name x, y and z once each, with an optional minus";
-                    return c.refuse(key("axes"), format!("{:?}", source.axes), limit);
-                }
-                if let Some(digest) = &source.sha256
-                    && (digest.len() != 64 || !digest.bytes().all(|b| b.is_ascii_hexdigit()))
-                {
-                    return c.refuse(key("sha256"), digest, "must be 64 hexadecimal digits");
-                }
-                c.positive(&key("scale"), source.scale, 1e6)?;
-                c.numbers(&key("offset"), &source.offset, -1e6, 1e6)?;
-            }
-            // Whether one is there matters only to those who make meshes: a design is judged without.
-            match (file, sources.is_empty()) {
-                (None, true) => {
-                    c.refuse(format!("{key}.file"), "nothing", "must name a file, or list sources")
-                }
-                (Some(file), false) => c.refuse(format!("{key}.file"), file, "goes without sources"),
-                _ => Ok(()),
-            }
-        }
-        FieldSection::Formula { text, .. } => {
-            c.text(&format!("{key}.text"), text, "must be a formula in x, y and z")
-        }
-        FieldSection::Volume { file, .. } | FieldSection::Grid { file, .. } => {
-            c.text(&format!("{key}.file"), file, "must name a file")
-        }
-        FieldSection::Points { file, offset, smoothing, centres, .. } => {
-            c.text(&format!("{key}.file"), file, "must name a file")?;
-            if let Some(offset) = offset {
-                c.length(&format!("{key}.offset"), *offset, 1e6)?;
-            }
-            c.number(&format!("{key}.smoothing"), *smoothing, 0.0, 1e6)?;
-            c.count(&format!("{key}.centres"), *centres, 4, 10_000)
-        }
-        FieldSection::Soup { file, epsilon, .. } => {
-            c.text(&format!("{key}.file"), file, "must name a file")?;
-            epsilon.map_or(Ok(()), |epsilon| c.number(&format!("{key}.epsilon"), epsilon, 0.0, 1e6))
-        }
-        FieldSection::Terrain(_) => Ok(()),
-    }
 }
 
 pub(super) fn check_stills(

@@ -112,7 +112,7 @@ fn names_are_those_that_are_taken() {
             tried += 1;
         }
     }
-    assert_eq!(tried, 19);
+    assert_eq!(tried, 21);
 }
 
 #[test]
@@ -334,13 +334,36 @@ fn full_study() -> StudyFile {
             stored: true,
             memory: true,
             target: text(),
-            sweep: Some(SweepSection {
+            machines: vec![text()],
+            sweep: Some(ThreadSweepSection {
                 objects: vec![text()],
                 cells: vec![1],
                 threads: vec![1],
                 iterations: 1,
             }),
         },
+        sweep: Some(SweepSection {
+            objects: vec![text()],
+            methods: vec![bi],
+            cells: vec![1],
+            combine: Combine::Listed,
+            limit: 1,
+            cases_per_job: 1,
+            times: 1,
+            pictures: true,
+            settings: vec![SettingSection {
+                objects: vec![text()],
+                methods: vec![bi],
+                key: text(),
+                values: vec![1.into()],
+                range: Some(RangeSection {
+                    from: 1.into(),
+                    to: 2.into(),
+                    steps: 2,
+                    scale: Scale::Logarithmic,
+                }),
+            }],
+        }),
         comparisons: vec![ComparisonSection { question: text(), left: id(), right: id() }],
         groups: vec![GroupSection { id: text(), label: text(), members: vec![bi] }],
         forms: Some(FormsSection {
