@@ -16,6 +16,7 @@ pub mod agreement;
 pub mod answered;
 pub mod audit;
 pub mod ballots;
+pub mod cases;
 pub mod decision;
 pub mod fraction;
 pub mod glance;

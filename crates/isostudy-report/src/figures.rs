@@ -4,6 +4,7 @@ mod answers;
 mod axis;
 mod bars;
 mod canvas;
+mod cases;
 mod distributions;
 mod draft;
 mod edge_groups;
@@ -37,6 +38,7 @@ pub use power::power_figure;
 use rayon::prelude::*;
 use sheet::Sheet;
 
+pub use cases::case_figures;
 pub use sweep::sweep_figures;
 
 /// What a page shows first, of whatever there is: contrasts over all answers, else the fronts of one object.

@@ -2,12 +2,17 @@
 //! Parquet. `docs/data.md` lists every column with its unit and what a missing value means.
 
 mod answers;
+mod cases;
 mod meshes;
 mod parquet;
 mod rows;
 mod times;
 
 pub(crate) use answers::{COLUMNS, answers};
+pub use cases::{
+    CaseMesh, CaseTimes, MeasuredCase, TimedCase, case_meshes, case_times, machine_name, measured_cases,
+    timed_cases,
+};
 pub(crate) use meshes::meshes;
 pub(crate) use times::times;
 

@@ -8,12 +8,14 @@
 //! - The same results give the same bytes.
 
 mod budgets;
+mod cases;
 mod data;
 mod distribution;
 mod evidence_of_probes;
 mod figure;
 mod figures;
 mod frames;
+mod machines;
 mod many;
 mod panel;
 mod parquet_text;
@@ -36,19 +38,25 @@ pub mod fixture;
 #[cfg(test)]
 use isostudy_inference::{Answered, Inputs};
 
+pub use cases::sweep_section;
 pub use data::frames;
 pub use figure::Figure;
 pub use figures::{
-    FigureError, KindShare, OVERVIEW, TableQuality, edge_groups_figure, figures, figures_of_groups,
-    history_figure, power_figure, sweep_figures,
+    FigureError, KindShare, OVERVIEW, TableQuality, case_figures, edge_groups_figure, figures,
+    figures_of_groups, history_figure, power_figure, sweep_figures,
 };
-pub use frames::{FrameError, LongFrame, answers_frame};
+pub use frames::{
+    CaseMesh, CaseTimes, FrameError, LongFrame, MeasuredCase, TimedCase, answers_frame, case_meshes,
+    case_times, machine_name, measured_cases, timed_cases,
+};
+pub use machines::machines_section;
 pub use many::{found_in_many, many_tables, pairs_csv, report_of_many, told_of_many};
 pub use panel::{PANEL_SCHEMA, Panel, StageTime};
 pub use parquet_text::{PARQUET_MARK, ParquetError, parquet_as_csv};
 pub use report::{Report, found, found_in_groups, report, report_of_groups};
 pub use self_test::self_test_tables;
 pub use tables::benchmark::of_objects as benchmark_of_objects;
+pub use tables::cases::case_tables;
 pub use tables::power::{power_sentences, power_tables};
 pub use tables::tables;
 pub use telling::{Telling, telling};

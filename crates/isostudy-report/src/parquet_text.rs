@@ -17,7 +17,7 @@ pub const PARQUET_MARK: [u8; 4] = *b"PAR1";
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParquetError {
-    /// The library refuses it: it is damaged, or compressed in a way that is not built in.
+    /// The library refuses it: it is damaged, or compressed by something else than Snappy or Zstandard.
     #[error("not read as Parquet: {0}")]
     Refused(String),
     /// The library gave up on it.

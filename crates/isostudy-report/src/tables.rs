@@ -5,6 +5,7 @@ pub(crate) mod agreement;
 mod answers;
 pub(crate) mod audit;
 pub(crate) mod benchmark;
+pub(crate) mod cases;
 mod chunks;
 pub(crate) mod contrasts;
 mod decision;

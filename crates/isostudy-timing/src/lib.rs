@@ -8,6 +8,7 @@
 //! BenchRun, BenchRun ── machine differences, compare ── Comparison ──┬── tables, brief
 //!                                                    Gate ── judge ──┴── GateResult, GateRecord
 //! AbRun ── ab ── AbComparison
+//! BenchRun of each machine ── Statements ── Machines ── tables
 //! BenchRun ── export, history
 //! ```
 //!
@@ -33,6 +34,7 @@ pub mod export;
 mod floor;
 mod gate;
 pub mod history;
+pub mod machines;
 mod outliers;
 mod quiet;
 mod ratios;

@@ -13,6 +13,11 @@ use isostudy_inference::mesh_set::known;
 ///
 /// Statistics of a distribution of nothing are missing.
 pub(crate) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
+    meshes_with(study, records, records.iter().any(|mesh| mesh.region.is_some()))
+}
+
+/// The same with columns of regions or without.
+pub(super) fn meshes_with(study: &Study, records: &[MeshRecord], has_regions: bool) -> LongFrame {
     let mut sorted: Vec<&MeshRecord> = records.iter().collect();
     let place = |mesh: &MeshRecord| study.configurations.iter().position(|c| c.id == mesh.id);
     sorted.sort_by_key(|mesh| (mesh.purpose, place(mesh), mesh.id.clone()));
@@ -49,7 +54,7 @@ pub(crate) fn meshes(study: &Study, records: &[MeshRecord]) -> LongFrame {
     TOPOLOGY.iter().for_each(|(name, of)| rows.count(name, |mesh| Some(of(&mesh.topology))));
     rows.whole("euler_characteristic", |mesh| Some(mesh.topology.euler_characteristic));
     rows.count("self_intersections", |mesh| mesh.topology.self_intersections);
-    if records.iter().any(|mesh| mesh.region.is_some()) {
+    if has_regions {
         in_regions(&mut rows);
     }
     LongFrame { name: "meshes", frame: rows.frame(), texts: Vec::new() }

@@ -14,9 +14,13 @@ use std::sync::Arc;
 const ROWS_OF_GROUP: usize = 1 << 18;
 
 pub(super) fn bytes(long: &LongFrame) -> PolarsResult<Vec<u8>> {
+    compressed(long, CompressionOptions::Uncompressed)
+}
+
+fn compressed(long: &LongFrame, compression: CompressionOptions) -> PolarsResult<Vec<u8>> {
     let options = WriteOptions {
         statistics: StatisticsOptions::default(),
-        compression: CompressionOptions::Uncompressed,
+        compression,
         version: Version::V1,
         data_page_size: None,
     };
@@ -67,4 +71,33 @@ fn named(places: &UInt32Chunked, texts: &[String]) -> PolarsResult<ArrayRef> {
     let keys: PrimitiveArray<u32> = places.iter().collect();
     let values = Utf8ViewArray::from_slice_values(texts);
     Ok(DictionaryArray::try_from_keys(keys, values.boxed(), false)?.boxed())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parquet_text::parquet_as_csv;
+
+    /// As other programs write it.
+    #[test]
+    fn compressed_files_are_read_as_plain_ones() {
+        let places: Vec<u32> = (0..5000).map(|row| row % 3).collect();
+        let seconds: Vec<Option<f64>> =
+            (0..5000).map(|row| (row % 7 > 0).then(|| f64::from(row) / 8.0)).collect();
+        let columns = vec![Column::new("choice".into(), places), Column::new("seconds".into(), seconds)];
+        let texts = ["left", "none", "right"].map(str::to_owned).to_vec();
+        let frame = DataFrame::new(5000, columns).unwrap();
+        let long = LongFrame { name: "test", frame, texts: vec![("choice", texts)] };
+        let read = |compression| {
+            let bytes = compressed(&long, compression).unwrap();
+            (bytes.len(), parquet_as_csv(bytes, |_| true).unwrap())
+        };
+        let (plain_bytes, plain) = read(CompressionOptions::Uncompressed);
+        assert!(plain.starts_with("choice,seconds\nleft,\nnone,0.125\n"), "{}", &plain[..60]);
+        for compression in [CompressionOptions::Snappy, CompressionOptions::Zstd(None)] {
+            let (bytes, text) = read(compression);
+            assert!(bytes < plain_bytes, "{compression:?}");
+            assert!(text == plain, "{compression:?}");
+        }
+    }
 }

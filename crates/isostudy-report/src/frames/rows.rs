@@ -40,6 +40,17 @@ impl<T> Rows<T> {
         self.columns.push(Column::new(name.into(), values));
     }
 
+    /// A column of truth values.
+    pub(super) fn truth(&mut self, name: &str, of: impl Fn(&T) -> Option<bool>) {
+        let values: Vec<Option<bool>> = self.rows.iter().map(of).collect();
+        self.columns.push(Column::new(name.into(), values));
+    }
+
+    /// The columns.
+    pub(super) fn columns(self) -> Vec<Column> {
+        self.columns
+    }
+
     /// The columns beside one another.
     ///
     /// # Panics
