@@ -9,7 +9,16 @@ use std::process::Stdio;
 use std::time::Duration;
 
 const STAGES: [&str; 6] = ["allocation", "sampling", "vertex", "geometry", "clustering", "normals"];
-const JOURNAL: &str = ".stages/bench.full.journal";
+/// The journal of the full run, which has the machine's name in its own.
+fn journal_of(out: &Path) -> Option<PathBuf> {
+    let entries = std::fs::read_dir(out.join(".stages")).ok()?.flatten().map(|entry| entry.path());
+    let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
+    let is_own = |path: &PathBuf| {
+        let name = name(path);
+        name.starts_with("bench.full.") && name.ends_with(".journal")
+    };
+    entries.into_iter().find(is_own)
+}
 
 fn run_of(folder: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(folder.join("bench/full/run.json")).unwrap()).unwrap()
@@ -18,8 +27,8 @@ fn run_of(folder: &Path) -> Value {
 /// Starts the benchmark and kills it when its journal has so many lines.
 fn kill_at(fixture: &Fixture, lines: usize) -> Vec<Value> {
     let mut child = fixture.command("bench").stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    let journal = fixture.out().join(JOURNAL);
-    let read = || std::fs::read_to_string(&journal).unwrap_or_default();
+    let read =
+        || journal_of(fixture.out()).and_then(|path| std::fs::read_to_string(path).ok()).unwrap_or_default();
     while read().matches('\n').count() < lines {
         assert_eq!(child.try_wait().unwrap(), None, "it ended before it could be killed");
         std::thread::sleep(Duration::from_millis(1));
@@ -37,7 +46,7 @@ fn a_killed_benchmark_goes_on_in_the_middle_of_a_round() {
     // The first line, the machine at rest, and the first process: one round of 18, so that 10 samples are not all.
     let journal = kill_at(&fixture, 2 + 10);
     fixture.succeed("bench", &[]);
-    assert!(!fixture.out().join(JOURNAL).exists());
+    assert_eq!(journal_of(fixture.out()), None);
     let run = run_of(fixture.out());
     let samples = run["samples"].as_array().unwrap();
     assert_eq!((samples.len(), run["aa_samples"].as_array().unwrap().len()), (5 * 18, 4 * 18));

@@ -35,6 +35,7 @@ mod study;
 #[path = "../crates/isostudy-design/tests/it/page.rs"]
 mod study_page;
 mod surface;
+mod sweep;
 mod table;
 mod terrain;
 mod truths;

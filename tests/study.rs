@@ -45,7 +45,7 @@ fn a_study_makes_everything_once_and_then_nothing() {
 /// so far records of meshes, digests of cameras, intervals of alpha, the note under what predicts preference, triangles that pass
 /// through each other, distances from sharp edges, p over methods in what predicts preference, the captions of contrasts
 /// and of shares of showings, distances to meshes from evenly spread points of the surface, a table of likings,
-/// and figures: their colours on dark pages, one more of each for narrow screens, and an overview.
+/// and figures: their colours on dark pages, one more of each for narrow screens, and an overview; and what a sweep leaves.
 ///
 /// It says that nothing changed, not that anything is right. That is for other tests: tables of answers against `isostudy-oracle` and
 /// published numbers, statistics against R and SciPy, meshes against genus, area and volume, pictures as `golden.rs` of

@@ -38,6 +38,8 @@ class Batch:
         self.seconds = sum(expected(job) for job in jobs)
         self.bytes = max(job["expected_bytes"] or UNKNOWN_BYTES for job in jobs)
         self.exclusive = any(job["exclusive"] for job in jobs)
+        # A timing is a batch alone, and may be for one machine.
+        self.machine = jobs[0]["machine"]
         self.marker = str(folder(plan) / f"{self.name}.done")
         # The batches that come first, filled in when all are known.
         self.needs = []

@@ -103,6 +103,19 @@ impl Drawn {
         })
     }
 
+    /// The first frame.
+    ///
+    /// # Errors
+    /// If the rasteriser refuses mesh or camera.
+    pub(crate) fn first_frame(
+        &self,
+        mesh: &TriangleMesh,
+        turntable: &Turntable,
+        shading: &Shading,
+    ) -> Result<Pixmap> {
+        Ok(self.still(mesh, turntable, shading)?.0)
+    }
+
     /// The first frame, and the scale of numbers that belongs below it.
     fn still(
         &self,

@@ -7,6 +7,7 @@
 //!                             └─ viewer ─────┼──────────────┤
 //! objects ─ budgets ─ timings ─┤             │              ├─ page ─ manifest
 //! objects ─────────── chunks ──┤             │              │
+//! sweep ── cases, their times ─┤             │              │
 //!              first frames ───┼─────────────┘              │
 //! answers ─────────────────────┴─ tables, figures, report ──┘
 //! ```
@@ -15,6 +16,7 @@ mod ab;
 mod accuracies;
 mod budgets;
 mod bundle;
+mod cases;
 mod formats;
 mod jobs;
 mod measurements;
@@ -22,8 +24,8 @@ mod meshes;
 mod pages;
 mod pictures;
 mod stimuli;
-mod sweep;
 mod tables;
+mod thread_sweep;
 mod times_apart;
 mod timings;
 mod viewer;
@@ -48,6 +50,7 @@ use crate::prepare::{Prepared, Spacings, Wanted, prepare};
 use crate::store::{Inputs, Stamp, Store, Writer};
 use anyhow::{Context, Result, bail};
 use isostudy_design::record::Purpose;
+use isostudy_design::sweep::Sweep;
 use isostudy_design::{Configuration, ConfigurationId, Study};
 use measurements::Times;
 use std::collections::BTreeMap;
@@ -70,6 +73,8 @@ pub(crate) struct Pipeline<'a> {
     study: &'a Study,
     store: Store,
     fields: Fields<'a>,
+    /// What is tried beyond objects and methods as they stand.
+    sweep: Option<Sweep<'a>>,
     threads: usize,
     /// Which meshes, animations and timings are made where they are not up to date.
     making: Making,
@@ -86,6 +91,7 @@ impl<'a> Pipeline<'a> {
             study,
             store,
             fields: Fields::new(study),
+            sweep: study.sweep(),
             threads,
             making: Making::All,
             spacings: RwLock::default(),
@@ -107,9 +113,10 @@ impl<'a> Pipeline<'a> {
         let chunks = self.chunk_times(None)?;
         let stored = self.stored_times(None)?;
         let times = Times { whole: &timings, chunks: &chunks, stored: &stored };
+        let swept = self.sweep_cases()?;
         let shown = self.shown_first(&meshes, &times)?;
         let pictures = self.pictures(&turntables, &shown)?;
-        let tables = self.tables(&meshes, &times, &pictures, &shown)?;
+        let tables = self.tables(&meshes, &times, &pictures, (&shown, swept))?;
         let viewer = self.viewer(&meshes, &shown)?;
         let made =
             [turntables, pairs, forms, stills, pictures, chunks, stored, vec![timings, tables]].concat();

@@ -7,8 +7,9 @@ use crate::place::place;
 use crate::recipe::{self, Recipe, recipe};
 use crate::{seeds, study_key};
 use anyhow::{Context, Result, bail};
-use isostudy_design::config::{ObjectSection, SweepSection};
+use isostudy_design::config::{ObjectSection, ThreadSweepSection};
 use isostudy_design::record::Purpose;
+use isostudy_design::sweep::Chosen;
 use isostudy_design::{Configuration, ConfigurationId, MethodId, Study};
 use isostudy_extract::{Arrangement, BoxGrid, Execution, Method, MethodError};
 use isostudy_field::StudyField;
@@ -204,11 +205,60 @@ pub(crate) fn check(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
     Ok(())
 }
 
-/// Checks every grid of a sweep, as [`check`].
+/// Checks a study's sweep: that each value makes a recipe, that each method has resolutions, and that what is held at the finest fits into
+/// memory.
+///
+/// # Errors
+/// The first that does not, naming file, key and limit.
+pub(crate) fn check_cases(study: &Study, machine_bytes: Option<u64>) -> Result<()> {
+    let Some(sweep) = study.sweep() else { return Ok(()) };
+    let finest = sweep.section.cells.iter().copied().max().unwrap_or_default();
+    let file = study.path.display();
+    for pair in &sweep.pairs {
+        let (id, object) = (pair.configuration.id.method, pair.configuration.object);
+        let check = |study: &Study, key: &str| -> Result<()> {
+            let method = match recipe(study, id, Purpose::Benchmark).with_context(|| key.to_owned())? {
+                Recipe::Extractor(method) => method,
+                Recipe::Meshes(_) => {
+                    bail!("{key}: {id}: its meshes are there already, so it has no place in a sweep")
+                }
+                Recipe::Family(of) => match of.has_one_resolution() {
+                    Some(on) => bail!("{key}: {id}: it works on {on}, so it has no place in a sweep"),
+                    None => return Ok(()),
+                },
+                Recipe::Program(_) => return Ok(()),
+            };
+            let wanted = Wanted::Cells(finest, Purpose::Benchmark);
+            let grid = grid(&study.file.objects[object], wanted.spacing(&study.file.objects[object]));
+            if let Err(error @ MethodError::Extract(_)) = method.check(&grid) {
+                bail!("{key}: {error}");
+            }
+            check_memory(study, object, &method, &grid, &Execution { threads: 1 }, machine_bytes)
+                .with_context(|| format!("{key}, with {finest} cells per axis"))
+        };
+        check(study, &format!("{file}: sweep of {}", pair.configuration.id))?;
+        for setting in pair.settings() {
+            for (place, value) in sweep.extremes(setting) {
+                let own = sweep.study_of(pair, &[Chosen { setting, place, value }])?;
+                check(
+                    &own,
+                    &format!("{file}: sweep.settings[{setting}]: {} = {value}", sweep.name(setting)),
+                )?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks every grid of a sweep of times, as [`check`].
 ///
 /// # Errors
 /// The first that cannot be filled or does not fit, naming file, key and limit.
-pub(crate) fn check_sweep(study: &Study, section: &SweepSection, machine_bytes: Option<u64>) -> Result<()> {
+pub(crate) fn check_thread_sweep(
+    study: &Study,
+    section: &ThreadSweepSection,
+    machine_bytes: Option<u64>,
+) -> Result<()> {
     let threads = section.threads.iter().copied().max().unwrap_or(1) as usize;
     for (i, &cells) in section.cells.iter().enumerate() {
         let objects = study.file.objects.iter().enumerate();

@@ -19,9 +19,13 @@ struct Versioned {
 
 /// Reads a run, and says on standard error which keys of its file are not read. Errors name the file and the place in it.
 pub(crate) fn read(path: &Path) -> Result<BenchRun> {
+    of(&input::bytes(path)?, path)
+}
+
+/// The same of a file's bytes.
+pub(crate) fn of(text: &[u8], path: &Path) -> Result<BenchRun> {
     let name = || path.display().to_string();
-    let text = input::bytes(path)?;
-    let Versioned { schema } = serde_json::from_slice(&text).with_context(name)?;
+    let Versioned { schema } = serde_json::from_slice(text).with_context(name)?;
     let (oldest, newest) = BenchRun::READ.into_inner();
     if schema < oldest {
         bail!("{}: schema = {schema}: this version reads {oldest} to {newest}; measure it again", name());
@@ -32,9 +36,9 @@ pub(crate) fn read(path: &Path) -> Result<BenchRun> {
             name()
         );
     }
-    let run: BenchRun = serde_json::from_slice(&text).with_context(name)?;
+    let run: BenchRun = serde_json::from_slice(text).with_context(name)?;
     run.check().with_context(name)?;
-    let unknown = unknown_keys(&serde_json::from_slice(&text)?, &serde_json::to_value(&run)?);
+    let unknown = unknown_keys(&serde_json::from_slice(text)?, &serde_json::to_value(&run)?);
     if !unknown.is_empty() {
         let keys: Vec<String> = unknown.into_iter().collect();
         tell!("{}: not read, since no run has such keys: {}", name(), keys.join(", "));

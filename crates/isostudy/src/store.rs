@@ -13,11 +13,13 @@ use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Mutex, OnceLock};
 use std::time::UNIX_EPOCH;
 
 const STAMPS: &str = ".stages";
 const PARTIAL: &str = ".partial";
+/// A file that another machine has not finished for so long is nobody's.
+const A_DAY: std::time::Duration = std::time::Duration::from_secs(24 * 3600);
 const LOCK_TRIES: u32 = 20;
 const LOCK_PAUSE: std::time::Duration = std::time::Duration::from_millis(10);
 
@@ -112,7 +114,8 @@ impl Store {
 
     /// A file for a stage to keep its progress in. No stage is named like it, and nothing removes it but its stage.
     pub(crate) fn journal(&self, name: &str) -> PathBuf {
-        self.root.join(STAMPS).join(format!("{}.journal", name.replace('/', ".")))
+        // Each machine that works on the folder has its own.
+        self.root.join(STAMPS).join(format!("{}.{}.journal", name.replace('/', "."), host()))
     }
 
     /// Whether what is up to date is redone as well.
@@ -420,10 +423,28 @@ pub(crate) fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
     all().with_context(|| format!("cannot write {}", path.display()))
 }
 
+/// What this machine is called, as a part of the names of files.
+fn host() -> &'static str {
+    static HOST: OnceLock<String> = OnceLock::new();
+    HOST.get_or_init(|| {
+        let told = fs::read_to_string("/proc/sys/kernel/hostname").ok();
+        let named = || ["HOSTNAME", "COMPUTERNAME"].iter().find_map(|name| std::env::var(name).ok());
+        let name = told.or_else(named).unwrap_or_default();
+        let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '-' };
+        name.trim().chars().map(plain).collect()
+    })
+}
+
+/// How the names of this machine's half-written files begin.
+fn partial_prefix() -> &'static str {
+    static PREFIX: OnceLock<String> = OnceLock::new();
+    PREFIX.get_or_init(|| format!(".{}.", host()))
+}
+
 /// A temporary file becomes a result, so it gets a result's permissions, not its owner's alone.
 fn partial_file() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".").suffix(PARTIAL);
+    builder.prefix(partial_prefix()).suffix(PARTIAL);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder
@@ -443,11 +464,20 @@ fn sweep(folder: &Path) -> Result<()> {
         let path = entry.with_context(|| format!("cannot read {}", folder.display()))?.path();
         if path.is_dir() {
             sweep(&path)?;
-        } else if path.to_string_lossy().ends_with(PARTIAL) {
+        } else if path.to_string_lossy().ends_with(PARTIAL) && !is_at_work_elsewhere(&path) {
             remove_if_there(&path)?;
         }
     }
     Ok(())
+}
+
+/// Whether another machine may be writing it: no lock of that machine is seen where locks are a node's own.
+fn is_at_work_elsewhere(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let has_host = name.trim_start_matches('.').trim_end_matches(PARTIAL).contains('.');
+    let age = fs::metadata(path).and_then(|metadata| metadata.modified()).ok();
+    let is_young = age.and_then(|time| time.elapsed().ok()).is_none_or(|age| age < A_DAY);
+    has_host && !name.starts_with(partial_prefix()) && is_young
 }
 
 /// Endings of texts that people read. JSON and programs of pages are read by programs.
@@ -536,6 +566,21 @@ mod tests {
         fs::write(fixture.folder.path().join(".file.partial"), "half").unwrap();
         assert!(fixture.run(false, "one", "file").redone);
         assert!(!fixture.folder.path().join(".file.partial").exists());
+    }
+
+    #[test]
+    fn what_another_machine_writes_stays_for_a_day() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let own = format!("{}abc{PARTIAL}", partial_prefix());
+        for name in [own.as_str(), ".another-node.abc.partial", ".another-node.old.partial"] {
+            fs::write(path(name), "half").unwrap();
+        }
+        let old = File::options().write(true).open(path(".another-node.old.partial")).unwrap();
+        old.set_modified(std::time::SystemTime::now() - 2 * A_DAY).unwrap();
+        drop(Store::open(folder.path(), false).unwrap());
+        assert!(!path(&own).exists() && !path(".another-node.old.partial").exists());
+        assert!(path(".another-node.abc.partial").exists());
     }
 
     #[test]

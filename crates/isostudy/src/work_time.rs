@@ -6,6 +6,7 @@ use crate::recipe::{Recipe, recipe};
 use anyhow::{Result, bail};
 use isostudy_design::config::LimitsSection;
 use isostudy_design::record::Purpose;
+use isostudy_design::sweep::Sweep;
 use isostudy_design::{Configuration, Study};
 use isostudy_extract::{Execution, Extractor, Method};
 use isostudy_field::StudyField;
@@ -29,8 +30,11 @@ struct Work<'a> {
     purpose: Purpose,
     /// Cells along the longest side, and in all.
     cells: [f64; 2],
-    /// How often the mesh is extracted.
+    /// How often the mesh is extracted, and how often one is measured.
     times: f64,
+    measured: f64,
+    /// Of a sweep's cases.
+    is_swept: bool,
 }
 
 /// Refuses a study of more than `limits.hours`. One that is far below by any measure is not tried; of the others each configuration is
@@ -54,7 +58,7 @@ pub(crate) fn check(study: &Study) -> Result<()> {
     let mut total_s = 0.0;
     for work in &works {
         let cost = trials.of(work)?;
-        total_s += work.times * cost.extracting_s + cost.measuring_s;
+        total_s += work.times * cost.extracting_s + work.measured * cost.measuring_s;
         if total_s > limit_s {
             let first = works[0].place(study);
             bail!(
@@ -81,6 +85,30 @@ fn works(study: &Study) -> Result<Vec<Work<'_>>> {
         for (purpose, times) in [(Purpose::Benchmark, 1.0 + timed), (Purpose::Stimulus, 1.0)] {
             let spacing = Wanted::For(purpose).spacing(object);
             works.extend(Work::of(study, configuration, purpose, spacing, times)?);
+        }
+    }
+    if let Some(sweep) = study.sweep() {
+        works.extend(cases(study, &sweep)?);
+    }
+    Ok(works)
+}
+
+/// The cases of a sweep, as if their settings were the study's own: at each resolution all of them as one work.
+fn cases<'a>(study: &'a Study, sweep: &Sweep<'a>) -> Result<Vec<Work<'a>>> {
+    let section = sweep.section;
+    let timed = match section.times {
+        0 => 0.0,
+        // Peak memory takes one more.
+        times => f64::from(times + study.file.benchmark.warmup + 1),
+    };
+    let mut works = Vec::new();
+    for pair in &sweep.pairs {
+        let count = pair.cases as f64 / section.cells.len() as f64;
+        for &cells in &section.cells {
+            let spacing = Wanted::Cells(cells, Purpose::Benchmark).spacing(study.object(pair.configuration));
+            let work =
+                Work::of(study, pair.configuration, Purpose::Benchmark, spacing, count * (1.0 + timed))?;
+            works.extend(work.map(|work| Work { measured: count, is_swept: true, ..work }));
         }
     }
     Ok(works)
@@ -200,7 +228,7 @@ impl<'a> Work<'a> {
         let object = study.object(configuration);
         let sides = [0, 1, 2].map(|axis| ((object.max[axis] - object.min[axis]) / spacing).max(1.0));
         let cells = [sides.into_iter().fold(1.0, f64::max), sides.into_iter().product()];
-        Ok(Some(Self { configuration, method, purpose, cells, times }))
+        Ok(Some(Self { configuration, method, purpose, cells, times, measured: 1.0, is_swept: false }))
     }
 
     /// Cells of all its extractions.
@@ -211,6 +239,13 @@ impl<'a> Work<'a> {
     /// `ss_bi with objects[0].benchmark_spacing = 0.002`.
     fn place(&self, study: &Study) -> String {
         let Self { configuration, purpose, .. } = self;
+        if self.is_swept {
+            let count = self.measured;
+            return format!(
+                "{} with {:.0} in sweep.cells, in {count:.0} cases,",
+                configuration.id, self.cells[0]
+            );
+        }
         let key = match purpose {
             Purpose::Stimulus => "stimulus_spacing",
             Purpose::Benchmark | Purpose::Indexed => "benchmark_spacing",

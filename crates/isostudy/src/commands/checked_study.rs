@@ -12,7 +12,9 @@ use std::path::Path;
 pub(super) fn load(path: &Path) -> Result<Study> {
     let study = input::study(path)?;
     recipe::check(&study)?;
-    prepare::check(&study, isostudy_bench::read_machine().memory_bytes)?;
+    let machine_bytes = isostudy_bench::read_machine().memory_bytes;
+    prepare::check(&study, machine_bytes)?;
+    prepare::check_cases(&study, machine_bytes)?;
     fields::check(&study)?;
     work_time::check(&study)?;
     if let Some(reading) =

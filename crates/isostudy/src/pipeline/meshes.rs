@@ -2,6 +2,7 @@
 
 use super::Pipeline;
 use crate::made::Made;
+use crate::memory::Limit;
 use crate::prepare::{Prepared, Wanted};
 use crate::records::{mesh_record, of_mesh};
 use crate::store::{Inputs, Stamp};
@@ -107,18 +108,9 @@ impl Pipeline<'_> {
             let prepared = self.prepare(configuration, Wanted::For(purpose))?;
             // On one thread, so that calls of the field are counted.
             let execution = Execution { threads: 1 };
-            let Made { mesh, counts, program } = self.make(configuration, &prepared, &execution, step)?;
-            let (own, cells) = (Wanted::For(purpose).spacing(object), prepared.cells()?);
-            // What is measured of the mesh alone takes one thread.
-            let (accuracy, (alone, trilinear)) = rayon::join(
-                || self.accuracy(configuration.object, own, &prepared, &mesh),
-                || (of_mesh(&mesh), trilinear_truth(&prepared, cells)),
-            );
-            let (accuracy, region) = accuracy?;
-            let measures = (&accuracy, region);
-            let mut record = mesh_record(&configuration.id, purpose, spacing, cells, counts, alone, measures);
-            record.trilinear = trilinear;
-            record.program = program;
+            let made = self.make(configuration, &prepared, &execution, step)?;
+            let spacings = [spacing, Wanted::For(purpose).spacing(object)];
+            let (mesh, record) = self.measured(configuration, purpose, &prepared, made, spacings)?;
             // The indexed variant is only measured: nothing is rendered from it.
             if purpose != Purpose::Indexed {
                 let mut ply = Vec::new();
@@ -127,6 +119,31 @@ impl Pipeline<'_> {
             }
             writer.write_json(&format!("meshes/{name}/{}.json", configuration.id), &record)
         })
+    }
+
+    /// What is measured of a mesh that was made with the first of the spacings. The isosurface's points are those of the second.
+    pub(super) fn measured(
+        &self,
+        configuration: &Configuration,
+        purpose: Purpose,
+        prepared: &Prepared<'_>,
+        made: Made,
+        [spacing, own]: [f64; 2],
+    ) -> Result<(TriangleMesh, MeshRecord)> {
+        let Made { mesh, counts, program } = made;
+        let cells = prepared.cells()?;
+        let limit = Limit::of_study(self.study, isostudy_bench::read_machine().memory_bytes);
+        // What is measured of the mesh alone takes one thread.
+        let (accuracy, (alone, trilinear)) = rayon::join(
+            || self.accuracy(configuration.object, own, prepared, &mesh),
+            || (of_mesh(&mesh), trilinear_truth(prepared, cells, limit)),
+        );
+        let (accuracy, region) = accuracy?;
+        let measures = (&accuracy, region);
+        let mut record = mesh_record(&configuration.id, purpose, spacing, cells, counts, alone, measures);
+        record.trilinear = trilinear;
+        record.program = program;
+        Ok((mesh, record))
     }
 
     /// Everything that an extraction depends on except its spacing.

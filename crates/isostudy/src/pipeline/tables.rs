@@ -13,12 +13,16 @@ use crate::terminal::progress::Step;
 use anyhow::{Context, Result};
 use isostudy_design::Study;
 use isostudy_design::config::ResponsesSection;
+use isostudy_design::sweep::Sweep;
+use isostudy_inference::cases::SweepFound;
 use isostudy_inference::tally::QuestionCount;
 use isostudy_inference::{Answered, BallotGroup, Many, Preferences, Results};
 use isostudy_paper::Paper;
+use isostudy_report::statement::Section;
 use isostudy_report::{Figure, LongFrame, OVERVIEW, Report};
 use isostudy_responses::Reading;
 use isostudy_table::Table;
+use isostudy_timing::machines::{Machines, machine_tables};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -30,7 +34,7 @@ impl Pipeline<'_> {
         meshes: &Meshes,
         times: &Times<'_>,
         pictures: &[Stamp],
-        shown: &ShownFirst,
+        (shown, swept): (&ShownFirst, Option<String>),
     ) -> Result<Stamp> {
         let step = Step::begin("tables", 1, 1);
         let mut inputs = study_inputs(self.study)?;
@@ -39,9 +43,15 @@ impl Pipeline<'_> {
         }
         let left_out = self.left_out();
         let waiting = kept_answers::waiting(self.study);
-        let inputs = inputs
+        let (runs, missing) = self.machine_runs()?;
+        inputs = inputs
             .value("left out", &left_out)
-            .value("waiting", &waiting.as_ref().map(|of| (of.answers, of.people)));
+            .value("sweep", &swept)
+            .value("machines that are missing", &missing);
+        for (name, stamp) in &runs {
+            inputs = inputs.text("machine", name).stamp(stamp);
+        }
+        inputs = inputs.value("waiting", &waiting.as_ref().map(|of| (of.answers, of.people)));
         let stamp = self.store.stage("tables", inputs, |writer| {
             let answers = crate::answer_files::of_study(self.study)?;
             let answers = answers.and_then(|reading| Answered::of(self.study, reading.responses));
@@ -50,7 +60,12 @@ impl Pipeline<'_> {
             let paper = Paper::of(&results);
             let gallery = Some(waiting.as_ref().map(|of| Unread::of(self.study, of)));
             let (pictures, caption) = (self.read_pictures(shown)?, self.pictures_caption(shown));
-            write(writer, &results, &paper, (&pictures, caption.as_deref()), gallery)?;
+            let sweep = self.sweep.as_ref().zip(self.sweep_found()?);
+            let machines = runs.iter().map(|(name, stamp)| Ok((name.clone(), self.bench_run(stamp)?)));
+            let machines = machines.collect::<Result<Vec<_>>>()?;
+            let machines = (!machines.is_empty()).then(|| (Machines::of(machines), &missing[..]));
+            let more = More { sweep, machines };
+            write(writer, &results, &paper, (&pictures, caption.as_deref()), (gallery, more))?;
             writer.write_json(UNEXPLAINED, &paper.unexplained_differences())
         })?;
         step.count(stamp.redone);
@@ -85,7 +100,7 @@ pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store)
     let paper = Paper::of(&results);
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;
-        write(writer, &results, &paper, (&[], None), None)
+        write(writer, &results, &paper, (&[], None), (None, More::default()))
     })?;
     Ok(Said { tables: all_tables(&results, &paper), found: isostudy_report::found(&results) })
 }
@@ -236,20 +251,49 @@ impl Unread {
     }
 }
 
+/// What the report has beside the results of answers, meshes and times.
+#[derive(Default)]
+struct More<'a> {
+    /// What the cases of a sweep say.
+    sweep: Option<(&'a Sweep<'a>, SweepFound)>,
+    /// What several machines say, and which have not measured the study.
+    machines: Option<(Machines, &'a [String])>,
+}
+
+impl More<'_> {
+    /// Sections of the report, with their tables and figures.
+    fn sections(&self, study: &Study) -> Result<(Vec<Section>, Vec<Table>, Vec<Figure>)> {
+        let (mut sections, mut tables, mut figures) = (Vec::new(), Vec::new(), Vec::new());
+        if let Some((machines, missing)) = &self.machines {
+            tables = machine_tables(machines);
+            sections.push(isostudy_report::machines_section(machines, missing, &tables));
+        }
+        if let Some((sweep, found)) = &self.sweep {
+            let own = isostudy_report::case_tables(sweep, found);
+            figures = isostudy_report::case_figures(study, found).context("figures")?;
+            sections.push(isostudy_report::sweep_section(found, &own, &figures));
+            tables.extend(own);
+        }
+        Ok((sections, tables, figures))
+    }
+}
+
 /// `gallery` says whether an `index.html` will stand beside the report, and what it has to say of answers that were not read.
 fn write(
     writer: &mut Writer<'_>,
     results: &Results<'_>,
     paper: &Paper<'_>,
     pictures: (&[PictureData], Option<&str>),
-    gallery: Option<Option<Unread>>,
+    (gallery, more): (Option<Option<Unread>>, More<'_>),
 ) -> Result<()> {
     let tables = all_tables(results, paper);
-    write_tables(writer, &tables)?;
     let figures = isostudy_report::figures(results).context("figures")?;
-    write_figures(writer, &figures)?;
-    let (overview, figures) = with_overview(figures);
-    let mut report = isostudy_report::report(results, &tables, &figures, paper.published(&tables));
+    let (sections, more_tables, more_figures) = more.sections(results.inputs.study)?;
+    write_tables(writer, &[&tables[..], &more_tables].concat())?;
+    write_figures(writer, &[&figures[..], &more_figures].concat())?;
+    let (overview, others) = with_overview(figures);
+    let mut report = isostudy_report::report(results, &tables, &others, paper.published(&tables));
+    report.sections.extend(sections);
     let has_gallery = gallery.is_some();
     if let Some(unread) = gallery.flatten() {
         unread.say_in(&mut report);

@@ -1,16 +1,17 @@
 //! The benchmark: every configuration timed, in rounds, in processes of its own; and what follows from the samples.
 
 use super::formats::write_table;
-use super::worker::{Job, timed};
+use super::worker::{Measurement, timed};
 use super::{Making, Pipeline};
 use crate::store::{Inputs, Stamp, remove_if_there};
 use crate::terminal::progress::Step;
 use crate::{machine, recipe, run_file, source_digests};
 use anyhow::{Result, bail};
 use isostudy_bench::Plan;
-use isostudy_design::machine::Machine;
+use isostudy_design::machine::{Build, Machine};
 use isostudy_design::record::{BenchRun, Purpose, Workload};
 use isostudy_design::{Configuration, ConfigurationId};
+use std::borrow::Cow;
 
 /// How many rounds are run, and of what.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +22,8 @@ pub(crate) enum PlanLength {
     Full,
     /// As the full one, of some configurations or with other rounds.
     Selected(Choice),
+    /// As the full one, on the machine that the study calls so.
+    On(String),
 }
 
 /// What of a study is measured, and for how long.
@@ -43,28 +46,33 @@ impl Pipeline<'_> {
         if self.spacings().is_empty() {
             self.budgets(&[Purpose::Benchmark], &[])?;
         }
-        let (machine, full) = (self.machine(stage_name(length))?, PlanLength::Full);
+        let name = stage_name(length);
+        let (machine, full) = (self.machine(&name)?, PlanLength::Full);
         if *length == PlanLength::Short
             && let Some(full) =
-                self.store.peek(stage_name(&full), self.inputs(&full, &self.machine(stage_name(&full))?)?)
+                self.store.peek(&stage_name(&full), self.inputs(&full, &self.machine(&stage_name(&full))?)?)
         {
             tell!("timings: the full run is up to date and stands for the short one");
             return Ok(full);
+        }
+        if matches!(length, PlanLength::On(_)) {
+            self.check_is_same_machine(&name, &machine)?;
         }
         let plan = self.plan(length)?;
         let inputs = self.inputs(length, &machine)?;
         let key = self.inputs(length, &machine)?.finish();
         let count = self.chosen(length)?.len();
         let step = Step::begin("timings", count * plan.iterations as usize, 0);
-        let journal = self.store.journal(stage_name(length));
-        let stamp = self.stage(stage_name(length), inputs, |writer| {
-            let job = Job { plan: &plan, configurations: self.chosen(length)?, cells: None };
+        let journal = self.store.journal(&name);
+        let stamp = self.stage(&name, inputs, |writer| {
+            let measurement =
+                Measurement { plan: &plan, configurations: self.chosen(length)?, cells: None, case: None };
             let enough = |run: &BenchRun| {
                 let told = isostudy_timing::would_tell(run);
                 plan.until.is_some_and(|share| told.is_some_and(|(_, most)| most <= 1.0 + share))
             };
-            let run = self.run(&job, machine, &journal, &key, &step, &enough)?;
-            let folder = stage_name(length);
+            let run = self.run(&measurement, machine, &journal, &key, &step, &enough)?;
+            let folder = &name;
             writer.write_json(&format!("{folder}/run.json"), &run)?;
             writer.write(
                 &format!("{folder}/samples.csv"),
@@ -88,6 +96,53 @@ impl Pipeline<'_> {
         Ok(stamp)
     }
 
+    /// Refuses to put times of this machine in the place of another's.
+    fn check_is_same_machine(&self, stage: &str, machine: &Machine) -> Result<()> {
+        let path = self.store.root().join(stage).join("run.json");
+        if self.store.forced() || !path.is_file() {
+            return Ok(());
+        }
+        let hardware = |of: &Machine| Machine { build: Build::default(), ..of.lasting() };
+        let before = run_file::read(&path)?.machine;
+        if hardware(&before) != hardware(machine) {
+            let model = |of: &Machine| of.model.clone().unwrap_or_else(|| "an unknown processor".into());
+            bail!(
+                "{stage}: it was measured on another machine, {} ({} threads), and this is {} ({} threads). Name this machine in \
+                 benchmark.machines, or take --force to put its times in their place",
+                model(&before),
+                before.threads,
+                model(machine),
+                machine.threads
+            );
+        }
+        Ok(())
+    }
+
+    /// The runs of the machines that the study names, with their stamps; and the names of those that have none of the study as it is.
+    pub(super) fn machine_runs(&self) -> Result<(Vec<(String, Stamp)>, Vec<String>)> {
+        let (mut runs, mut missing) = (Vec::new(), Vec::new());
+        for name in &self.study.file.benchmark.machines {
+            let length = PlanLength::On(name.clone());
+            let stage = stage_name(&length);
+            let path = self.store.root().join(&*stage).join("run.json");
+            let measured = match path.is_file() {
+                true => self.store.peek(&stage, self.inputs(&length, &run_file::read(&path)?.machine)?),
+                false => None,
+            };
+            match measured {
+                Some(stamp) => runs.push((name.clone(), stamp)),
+                None => {
+                    let file = self.study.path.display();
+                    tell!(
+                        "machine {name} has not measured the study as it is: run `isostudy job {file} {stage}` there"
+                    );
+                    missing.push(name.clone());
+                }
+            }
+        }
+        Ok((runs, missing))
+    }
+
     /// The machine whose times a stage has: this one, or where times are only looked up that which measured them.
     pub(super) fn machine(&self, stage: &str) -> Result<Machine> {
         let is_made = match &self.making {
@@ -101,6 +156,8 @@ impl Pipeline<'_> {
             "bench/short" => &run[1..],
             _ => &run[..],
         };
+        let own = stage.strip_prefix(MACHINES).map(|_| self.store.root().join(stage).join("run.json"));
+        let measured = own.as_ref().map_or(measured, std::slice::from_ref);
         match measured.iter().find(|path| path.is_file()).filter(|_| !is_made) {
             Some(path) => Ok(run_file::read(path)?.machine),
             None => Ok(machine::read()),
@@ -128,7 +185,7 @@ impl Pipeline<'_> {
 
     /// A finished run.
     pub(crate) fn bench_run(&self, stamp: &Stamp) -> Result<BenchRun> {
-        run_file::read(&self.store.root().join(stamp.file("run.json")))
+        run_file::of(&self.store.read(stamp, "run.json")?, &self.store.root().join(stamp.file("run.json")))
     }
 
     fn plan(&self, length: &PlanLength) -> Result<Plan> {
@@ -137,7 +194,7 @@ impl Pipeline<'_> {
         let (mut iterations, mut batches, mut until) = (section.iterations, 1, None);
         match length {
             PlanLength::Short => iterations = section.short_iterations,
-            PlanLength::Full => {}
+            PlanLength::Full | PlanLength::On(_) => {}
             PlanLength::Selected(Choice { until: share @ Some(_), rounds, .. }) => {
                 until = *share;
                 batches = rounds.map_or(BATCHES, |rounds| rounds.div_ceil(iterations));
@@ -218,10 +275,19 @@ impl Pipeline<'_> {
     }
 }
 
-fn stage_name(length: &PlanLength) -> &'static str {
+/// Where the runs of other machines are.
+const MACHINES: &str = "bench/machine/";
+
+/// The stage of a machine that the study names.
+pub(super) fn machine_stage(name: &str) -> String {
+    format!("{MACHINES}{name}")
+}
+
+fn stage_name(length: &PlanLength) -> Cow<'static, str> {
     match length {
-        PlanLength::Short => "bench/short",
-        PlanLength::Full => "bench/full",
-        PlanLength::Selected(_) => "bench/selected",
+        PlanLength::Short => "bench/short".into(),
+        PlanLength::Full => "bench/full".into(),
+        PlanLength::Selected(_) => "bench/selected".into(),
+        PlanLength::On(machine) => machine_stage(machine).into(),
     }
 }

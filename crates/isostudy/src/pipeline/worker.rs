@@ -1,6 +1,7 @@
 //! Measuring processes: the command line that starts one, the run that drives it, and what it does itself.
 
 use super::Pipeline;
+use super::cases::study_of_case;
 use crate::fields::Fields;
 use crate::input;
 use crate::measured::{Clock, asked};
@@ -12,12 +13,12 @@ use crate::terminal::tell_once;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use isostudy_bench::{BenchError, Entry, PLANTED, Plan, Planted, ProcessExecutor};
-use isostudy_design::config::SweepSection;
+use isostudy_design::config::ThreadSweepSection;
 use isostudy_design::machine::Machine;
 use isostudy_design::record::{BenchRun, Failure, Purpose};
 use isostudy_design::{Configuration, ConfigurationId, Study};
 use isostudy_foreign::Folder;
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -39,6 +40,9 @@ pub(crate) struct Invocation {
     /// Configurations that failed or were not asked for, and are not counted
     #[arg(long)]
     without: Vec<String>,
+    /// A case of the study's own sweep: the places of its pair, and its number. --cells has its resolution
+    #[arg(long, num_args = 2, value_names = ["PAIR", "NUMBER"])]
+    case: Option<Vec<u64>>,
     /// Spacings that were found for methods with a budget
     #[arg(long)]
     spacings: Option<PathBuf>,
@@ -57,6 +61,9 @@ impl Invocation {
         if let Some(cells) = self.cells {
             command.args(["--cells", &cells.to_string()]);
         }
+        if let Some(case) = &self.case {
+            command.arg("--case").args(case.iter().map(u64::to_string));
+        }
         for id in &self.without {
             command.args(["--without", id]);
         }
@@ -70,51 +77,61 @@ impl Invocation {
 }
 
 /// What one run measures: the configurations of a plan, in processes of their own.
-pub(super) struct Job<'a> {
+pub(super) struct Measurement<'a> {
     pub(super) plan: &'a Plan,
     /// In the order that the measuring process counts them.
     pub(super) configurations: Vec<&'a Configuration>,
-    /// Cells per axis of the study's sweep; `None` for the benchmark's own spacing.
+    /// Cells per axis of a sweep; `None` for the benchmark's own spacing.
     pub(super) cells: Option<u32>,
+    /// The place of a pair and the number of a case, where the only configuration is a case of the study's own sweep.
+    pub(super) case: Option<(usize, u64)>,
 }
 
-impl Job<'_> {
+impl Measurement<'_> {
     fn ids(&self) -> Vec<ConfigurationId> {
         self.configurations.iter().map(|configuration| configuration.id.clone()).collect()
     }
 }
 
 impl Pipeline<'_> {
-    /// Does a job, in measuring processes that this program starts of itself. What a killed run left in the journal is not
+    /// Measures, in measuring processes that this program starts of itself. What a killed run left in the journal is not
     /// measured again.
     ///
     /// # Errors
     /// If a process cannot be started or refuses, or the journal cannot be written.
     pub(super) fn run(
         &self,
-        job: &Job<'_>,
+        of: &Measurement<'_>,
         machine: Machine,
         journal: &Path,
         key: &str,
         step: &Step,
         enough: &dyn Fn(&BenchRun) -> bool,
     ) -> Result<BenchRun> {
-        let plan = job.plan;
-        let done = self.take_up(journal, key, job)?;
+        let plan = of.plan;
+        let done = self.take_up(journal, key, of)?;
         let lines: String = [Entry::Begun { key: key.into() }].iter().chain(&done).map(Entry::line).collect();
         write_whole(journal, lines.as_bytes())?;
         let mut file =
             File::options().append(true).open(journal).with_context(|| journal.display().to_string())?;
+        // Two at once would put their entries between each other's.
+        if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
+            bail!("{}: another isostudy of this machine measures the same at this moment", journal.display());
+        }
         let program = std::env::current_exe().context("cannot find this program to start it again")?;
         let (_folder, spacings) = self.spacings_file()?;
-        let mut invocation = self.invocation([plan.threads, u32::from(plan.pin)], &job.ids(), &spacings)?;
-        invocation.cells = job.cells;
+        let mut invocation = self.invocation([plan.threads, u32::from(plan.pin)], &of.ids(), &spacings)?;
+        invocation.cells = of.cells;
+        if let Some((pair, number)) = of.case {
+            invocation.case = Some(vec![pair as u64, number]);
+            invocation.without = Vec::new();
+        }
         let worker = || invocation.command(&program);
         let mut record = |entry: &Entry| file.write_all(entry.line().as_bytes());
-        let may_fail = |number: usize| is_program(self.study, job.configurations[number]);
+        let may_fail = |number: usize| is_program(self.study, of.configurations[number]);
         let mut executor = ProcessExecutor::new(&worker).leaving_out(&may_fail).telling(tell_once);
         let on_turn = &mut |done, all| step.set(done, all);
-        let ids = job.ids();
+        let ids = of.ids();
         Ok(isostudy_bench::run_until(plan, &ids, &mut executor, machine, done, &mut record, on_turn, enough)?)
     }
 
@@ -140,6 +157,7 @@ impl Pipeline<'_> {
             threads,
             pin: pin > 0,
             cells: None,
+            case: None,
             without: left_out.map(ToString::to_string).collect(),
             spacings: Some(spacings.to_owned()),
             sandbox: recipe::uses_sandbox(),
@@ -154,15 +172,14 @@ impl Pipeline<'_> {
     }
 
     /// What a killed run of the same plan, machine and code left behind.
-    fn take_up(&self, journal: &Path, key: &str, job: &Job<'_>) -> Result<Vec<Entry>> {
+    fn take_up(&self, journal: &Path, key: &str, of: &Measurement<'_>) -> Result<Vec<Entry>> {
         let Ok(text) = std::fs::read_to_string(journal) else { return Ok(Vec::new()) };
         if self.store.forced() {
             tell!("timings: begun anew, as --force says; an unfinished run is not gone on with");
             return Ok(Vec::new());
         }
         let read = isostudy_bench::read_journal(&text, key).map_err(BenchError::from);
-        match read.and_then(|done| isostudy_bench::check_journal(job.plan, &job.ids(), &done).map(|()| done))
-        {
+        match read.and_then(|done| isostudy_bench::check_journal(of.plan, &of.ids(), &done).map(|()| done)) {
             Ok(done) => {
                 if !done.is_empty() {
                     tell!("timings: an unfinished run is gone on with ({} entries)", done.len());
@@ -201,7 +218,7 @@ pub(super) fn is_program(study: &Study, configuration: &Configuration) -> bool {
 }
 
 /// The configurations that a study's sweep is about: those of its objects that have a time at any resolution.
-pub(super) fn swept<'s>(study: &'s Study, section: &SweepSection) -> Result<Vec<&'s Configuration>> {
+pub(super) fn swept<'s>(study: &'s Study, section: &ThreadSweepSection) -> Result<Vec<&'s Configuration>> {
     let mut swept = Vec::new();
     for configuration in timed(study)? {
         let recipe = recipe(study, configuration.id.method, Purpose::Indexed)?;
@@ -225,15 +242,17 @@ pub(crate) fn measure(invocation: &Invocation) -> Result<()> {
     if sha256(&input::bytes(&study.path)?) != invocation.sha256 {
         bail!("{} was changed while the benchmark ran", study.path.display());
     }
-    let fields = Fields::new(&study);
-    let sweep = match (invocation.cells, &study.file.benchmark.sweep) {
-        (Some(cells), Some(section)) => Some((cells, section)),
-        (Some(_), None) => bail!("{}: there is no [benchmark.sweep]", study.path.display()),
-        (None, _) => None,
+    let case = match invocation.case.as_deref() {
+        Some(&[pair, number]) => Some(study_of_case(&study, usize::try_from(pair)?, number)?),
+        _ => None,
     };
-    let mut configurations = match sweep {
-        Some((_, section)) => swept(&study, section)?,
-        None => timed(&study)?,
+    let study = case.as_ref().map_or(&study, |(study, _)| study);
+    let fields = Fields::new(study);
+    let (mut configurations, purpose) = match (&case, invocation.cells, &study.file.benchmark.sweep) {
+        (Some((_, configuration)), ..) => (vec![configuration], Purpose::Benchmark),
+        (None, Some(_), Some(section)) => (swept(study, section)?, Purpose::Indexed),
+        (None, Some(_), None) => bail!("{}: there is no [benchmark.sweep]", study.path.display()),
+        (None, None, _) => (timed(study)?, Purpose::Benchmark),
     };
     configurations.retain(|configuration| !invocation.without.contains(&configuration.id.to_string()));
     let spacings: Spacings = match &invocation.spacings {
@@ -244,11 +263,11 @@ pub(crate) fn measure(invocation: &Invocation) -> Result<()> {
     };
     let prepared = |number: usize| -> Result<Prepared<'_>, String> {
         let configuration = *configurations.get(number).ok_or("there is no such configuration")?;
-        let wanted = match sweep {
-            Some((cells, _)) => Wanted::Cells(cells, Purpose::Indexed),
-            None => Wanted::For(Purpose::Benchmark),
+        let wanted = match invocation.cells {
+            Some(cells) => Wanted::Cells(cells, purpose),
+            None => Wanted::For(purpose),
         };
-        prepare(&study, &fields, &spacings, configuration, wanted).map_err(|error| format!("{error:#}"))
+        prepare(study, &fields, &spacings, configuration, wanted).map_err(|error| format!("{error:#}"))
     };
     let (requests, replies) = (std::io::stdin().lock(), std::io::stdout().lock());
     let mut clock = Clock::new(prepared);
@@ -282,6 +301,7 @@ mod tests {
             threads: 3,
             pin: false,
             cells: None,
+            case: None,
             without: Vec::new(),
             spacings: None,
             sandbox: false,
@@ -292,6 +312,7 @@ mod tests {
             threads: 1,
             pin: true,
             cells: Some(50),
+            case: Some(vec![3, 1_000_000]),
             without: vec!["ss_bi".into(), "as_fp".into()],
             spacings: Some("spacings.json".into()),
             sandbox: true,

@@ -18,7 +18,7 @@ pub(crate) struct Arguments {
 /// If the study is wrong or has no sweep, or a measurement fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     with_pipeline(&arguments.run, |pipeline, out| {
-        for table in pipeline.sweep()? {
+        for table in pipeline.thread_sweep()? {
             say(&table)?;
         }
         say(&out.join("bench/sweep").display().to_string())

@@ -2,7 +2,7 @@
 
 use super::Pipeline;
 use super::formats::{write_figure, write_table};
-use super::worker::{Job, swept};
+use super::worker::{Measurement, swept};
 use crate::input;
 use crate::made::Made;
 use crate::prepare::{self, Wanted};
@@ -12,7 +12,7 @@ use crate::{machine, source_digests};
 use anyhow::{Context, Result, bail};
 use isostudy_bench::Plan;
 use isostudy_design::Configuration;
-use isostudy_design::config::SweepSection;
+use isostudy_design::config::ThreadSweepSection;
 use isostudy_design::machine::Machine;
 use isostudy_design::record::{Purpose, SweepMesh};
 use isostudy_extract::{Execution, Extractor};
@@ -20,12 +20,12 @@ use isostudy_timing::sweep::SweepLevel;
 
 impl Pipeline<'_> {
     /// Measures what is not up to date, writes tables and figures, and returns the tables as Markdown.
-    pub(crate) fn sweep(&self) -> Result<Vec<String>> {
+    pub(crate) fn thread_sweep(&self) -> Result<Vec<String>> {
         let file = &self.study.file;
         let Some(section) = &file.benchmark.sweep else {
             bail!("{}: there is no [benchmark.sweep]; configs/paper.toml has one", self.study.path.display());
         };
-        prepare::check_sweep(self.study, section, isostudy_bench::read_machine().memory_bytes)?;
+        prepare::check_thread_sweep(self.study, section, isostudy_bench::read_machine().memory_bytes)?;
         let machine = machine::read();
         let (mut levels, mut meshes, mut stamps) = (Vec::new(), Vec::new(), Vec::new());
         // Threads inside: what is compared is measured close together.
@@ -70,7 +70,7 @@ impl Pipeline<'_> {
     /// One resolution on so many threads.
     fn sweep_level(
         &self,
-        section: &SweepSection,
+        section: &ThreadSweepSection,
         cells: u32,
         threads: u32,
         machine: &Machine,
@@ -87,9 +87,9 @@ impl Pipeline<'_> {
         let (journal, key) = (self.store.journal(&name), inputs()?.finish());
         tell!("sweep: {cells} cells per axis, threads: {threads}");
         let step = Step::begin("sweep", configurations.len() * plan.iterations as usize, 0);
-        let job = Job { plan: &plan, configurations, cells: Some(cells) };
+        let measurement = Measurement { plan: &plan, configurations, cells: Some(cells), case: None };
         let stamp = self.stage(&name, inputs()?, |writer| {
-            let run = self.run(&job, machine.clone(), &journal, &key, &step, &|_| false)?;
+            let run = self.run(&measurement, machine.clone(), &journal, &key, &step, &|_| false)?;
             writer.write_json(&format!("{name}/run.json"), &run)?;
             writer.write(&format!("{name}/samples.csv"), isostudy_bench::samples_csv(&run.samples).as_bytes())
         })?;
@@ -99,7 +99,7 @@ impl Pipeline<'_> {
         Ok(stamp)
     }
 
-    fn sweep_plan(&self, section: &SweepSection, cells: u32, threads: u32) -> Result<Plan> {
+    fn sweep_plan(&self, section: &ThreadSweepSection, cells: u32, threads: u32) -> Result<Plan> {
         let benchmark = &self.study.file.benchmark;
         Ok(Plan {
             study: self.study.file.study.id.clone(),
@@ -119,12 +119,12 @@ impl Pipeline<'_> {
     }
 
     /// What is asked of the extractor at a resolution.
-    fn sweep_inputs(&self, inputs: Inputs, section: &SweepSection, cells: u32) -> Result<Inputs> {
+    fn sweep_inputs(&self, inputs: Inputs, section: &ThreadSweepSection, cells: u32) -> Result<Inputs> {
         Ok(inputs.value("workloads", &self.workloads(&self.swept(section)?, Some(cells))?))
     }
 
     /// What is extracted at a resolution, untimed.
-    fn sweep_meshes(&self, section: &SweepSection, cells: u32) -> Result<Stamp> {
+    fn sweep_meshes(&self, section: &ThreadSweepSection, cells: u32) -> Result<Stamp> {
         let inputs = self.sweep_inputs(Inputs::of_sources(source_digests::MESHES), section, cells)?;
         let configurations = self.swept(section)?;
         self.stage(&format!("bench/sweep/{cells:04}-meshes"), inputs, |writer| {
@@ -140,7 +140,7 @@ impl Pipeline<'_> {
     }
 
     /// The configurations of the sweep that have not failed.
-    fn swept(&self, section: &SweepSection) -> Result<Vec<&Configuration>> {
+    fn swept(&self, section: &ThreadSweepSection) -> Result<Vec<&Configuration>> {
         let mut swept = swept(self.study, section)?;
         swept.retain(|configuration| !self.has_failed(&configuration.id));
         Ok(swept)
