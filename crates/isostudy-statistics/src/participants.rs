@@ -47,6 +47,29 @@ fn by_every_pair(a: &[AnsweredPair], b: &[AnsweredPair]) -> Ordering {
     }
 }
 
+/// A table of all pairs of so many items takes 4 MiB. It saves sorting as many pairs as there are ballots.
+const FEW_ITEMS: usize = 1024;
+
+/// The ordered pairs that were shown, ascending; and of few items the place of each pair among them.
+fn shown(items: usize, ballots: &[&ShownBallot]) -> (Vec<(usize, usize)>, Option<Vec<u32>>) {
+    let pairs = ballots.iter().map(|b| (b.left(), b.right()));
+    if items > FEW_ITEMS {
+        let mut shown: Vec<(usize, usize)> = pairs.collect();
+        shown.sort_unstable();
+        shown.dedup();
+        shown.shrink_to_fit();
+        return (shown, None);
+    }
+    let mut is_shown = vec![false; items * items];
+    pairs.for_each(|(left, right)| is_shown[left * items + right] = true);
+    let (mut shown, mut places) = (Vec::new(), vec![0; items * items]);
+    for at in (0..is_shown.len()).filter(|&at| is_shown[at]) {
+        places[at] = shown.len() as u32;
+        shown.push((at / items, at % items));
+    }
+    (shown, Some(places))
+}
+
 impl Participants {
     /// Everyone with a ballot about two different items. The order of ballots does not matter.
     pub fn of(items: usize, ballots: &[ShownBallot]) -> Self {
@@ -54,11 +77,11 @@ impl Participants {
         let mut own: Vec<&ShownBallot> = ballots.iter().filter(useful).collect();
         // Files have one participant after the other: then there is nothing to sort.
         own.sort_by_key(|b| b.participant());
-        let mut shown: Vec<(usize, usize)> = own.iter().map(|b| (b.left(), b.right())).collect();
-        shown.sort_unstable();
-        shown.dedup();
-        shown.shrink_to_fit();
-        let place = |b: &ShownBallot| shown.binary_search(&(b.left(), b.right())).expect("collected above");
+        let (shown, places) = shown(items, &own);
+        let place = |b: &ShownBallot| match &places {
+            Some(places) => places[b.left() * items + b.right()] as usize,
+            None => shown.binary_search(&(b.left(), b.right())).expect("it was shown"),
+        };
         let (mut all, mut everybody) = (Vec::with_capacity(own.len()), Vec::new());
         let mut of_one: Vec<(u32, Outcome)> = Vec::new();
         for person in own.chunk_by(|a, b| a.participant() == b.participant()) {
