@@ -41,7 +41,7 @@ const SIGHT: [i32; 3] = [3, 3, 1];
 /// A chunk is divided that is nearer than so many of its sides. With 1 or more, levels of neighbours differ by one at most.
 const NEAR: f32 = 1.5;
 /// Surface nets with one vertex per cell, which alone have levels.
-const NETS: Method = Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 });
+const NETS: Method = Method::SurfaceNets(SurfaceNets::new());
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "cubes" => Method::Cubes(Cubes::default()),
         "nets" => NETS,
         "dc" => Method::DualContouring(DualContouring::default()),
-        "dc-in-cell" => Method::DualContouring(DualContouring { in_cell: true, ..DualContouring::default() }),
+        "dc-in-cell" => Method::DualContouring(DualContouring::default().with_in_cell(true)),
         other => return Err(format!("{other}: must be cubes, nets, dc or dc-in-cell").into()),
     };
     let grid = Grid::try_new([0.0; 3], 1.0)?;

@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // One cube a sample, over all samples and a little more. Inside is what is brighter than the isovalue.
     let lattice = Lattice::try_new(Arrangement::BodyCentred, field.closing_bounds(), field.spacing())?;
-    let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_isovalue(isovalue);
     let mut surface = extract(&field, &lattice, &settings, &Execution::default())?.mesh;
 
     // glTF has y up; most scans have z. Turning keeps normals normals.

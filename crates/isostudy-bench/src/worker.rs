@@ -264,10 +264,10 @@ mod tests {
         let mut out = Vec::new();
         let plain = Tetrahedra::new(Arrangement::BodyCentred);
         let subject = &mut |number| match number {
-            0 => Ok(sphere(Tetrahedra { clustering: Clustering::EdgeCollapse, ..plain })),
+            0 => Ok(sphere(plain.with_clustering(Clustering::EdgeCollapse))),
             1 => {
                 let positions = Positions::Accumulated { chunks: 0 };
-                Ok(sphere(Tetrahedra { positions, ..plain }))
+                Ok(sphere(plain.with_positions(positions)))
             }
             _ => Err("there are two subjects".into()),
         };

@@ -73,7 +73,7 @@ fn what_is_planted_is_counted_where_it_is() {
 
 fn a_field_that_allocates_does_so_in_the_sampling_stage() {
     let body_centred = Tetrahedra::new(Arrangement::BodyCentred);
-    let dense = Tetrahedra { positions: Positions::Accumulated { chunks: 1 }, ..body_centred };
+    let dense = body_centred.with_positions(Positions::Accumulated { chunks: 1 });
     for method in [
         Method::Tetrahedra(body_centred),
         Method::Tetrahedra(Tetrahedra::new(Arrangement::SimpleCubic)),
@@ -99,7 +99,7 @@ fn a_field_that_allocates_does_so_in_the_sampling_stage() {
 fn the_dense_extractor_takes_what_its_lattice_says() {
     let positions = Positions::Accumulated { chunks: 1 };
     let (counts, _) =
-        counted(Method::Tetrahedra(Tetrahedra { positions, ..Tetrahedra::new(Arrangement::BodyCentred) }), 0);
+        counted(Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred).with_positions(positions)), 0);
     let told = 2.0 * grid().lattice(Arrangement::BodyCentred).unwrap().memory_bytes() as f64;
     let found = counts.bytes.allocation as f64;
     assert!(found > 0.99 * told && found < 1.01 * told, "{found} bytes, {told} told");
@@ -112,7 +112,8 @@ fn stages_add_up_and_those_that_are_not_there_ask_for_nothing() {
         (Clustering::EdgeCollapse, Placement::MeanOfCrossings),
         (Clustering::Integrated, Placement::Relaxed),
     ] {
-        let method = Tetrahedra { clustering, placement, ..Tetrahedra::new(Arrangement::BodyCentred) };
+        let method =
+            Tetrahedra::new(Arrangement::BodyCentred).with_clustering(clustering).with_placement(placement);
         let (counts, _) = counted(Method::Tetrahedra(method), 0);
         let collapses = clustering == Clustering::EdgeCollapse;
         let is_there = |stage: Stage| stage != Stage::Clustering || collapses;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::hull::{Hull, Place, dot, hull, minus, normal};
+use crate::hull::{Hull, Place, dot, hull, in_order, minus, normal};
 
 /// A convex cell with corners at whole coordinates. A [divided](Self::divided) cube has corners within faces and edges.
 ///
@@ -73,7 +73,7 @@ impl Cell {
             .flat_map(|face| (0..face.len()).map(|i| side(face, i)))
             .map(|[a, b]| [a.min(b), a.max(b)])
             .collect();
-        edges.sort_unstable();
+        in_order(&mut edges);
         edges.dedup();
         let number = |[a, b]: [u8; 2]| {
             let edge = [a.min(b), a.max(b)];

@@ -47,8 +47,19 @@ pub(crate) fn hull(points: &[Place]) -> Hull {
         return Hull::Flat;
     }
     let mut facets: Vec<Vec<u8>> = facets.into_iter().map(|(_, polygon)| polygon).collect();
-    facets.sort_unstable();
+    in_order(&mut facets);
     Hull::Solid(facets)
+}
+
+/// Sorts a few items. What sorts many is 4 kB in a module for a page.
+pub(crate) fn in_order<T: Ord>(items: &mut [T]) {
+    for end in 1..items.len() {
+        let mut at = end;
+        while at > 0 && items[at - 1] > items[at] {
+            items.swap(at - 1, at);
+            at -= 1;
+        }
+    }
 }
 
 /// Points of one plane in order, counter-clockwise seen from where the normal points, the lowest number first.

@@ -63,7 +63,7 @@ impl Case {
 
     fn run(&mut self, samples: Option<&[f32]>, clustering: Clustering, threads: usize) {
         let source = samples.map_or(Source::Study(&*self.field), Source::Samples);
-        let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+        let settings = ExtractSettings::default().with_clustering(clustering);
         let execution = Execution { threads };
         self.extractor
             .extract_into(source, &self.lattice, &settings, &execution, &mut self.extraction)
@@ -99,7 +99,8 @@ fn whole<const N: u32>(bencher: Bencher, name: &str) {
 /// [`whole`] with another placement of vertices.
 fn placed<const N: u32>(bencher: Bencher, name: &str, placement: Placement, refine_crossings: bool) {
     let Some(mut case) = Case::new(name, N) else { return };
-    let settings = ExtractSettings { placement, refine_crossings, ..ExtractSettings::default() };
+    let settings =
+        ExtractSettings::default().with_placement(placement).with_refine_crossings(refine_crossings);
     bencher.bench_local(|| {
         let Case { field, lattice, extractor, extraction } = &mut case;
         extractor

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p isostudy-extract --example chunk_costs`
 
-#[path = "../../../examples/browser/src/ground.rs"]
+#[path = "browser/src/ground.rs"]
 mod ground;
 
 use std::hint::black_box;
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
         println!("{arrangement}, integrated, chunks of 32³ cells:");
         let plain = Tetrahedra::new(arrangement);
-        let relaxed = Tetrahedra { placement: Placement::Relaxed, ..plain };
+        let relaxed = plain.with_placement(Placement::Relaxed);
         let settings = ChunkSettings::default();
         for (what, method, settings, field) in [
             ("with a bound", plain, settings, Source::from(&ground)),

@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         _ => Box::new(Asteroid::default()),
     };
     let lattice = Lattice::try_new(arrangement, BOX, 2.0 / cells as f32)?;
-    let settings = ExtractSettings { clustering: Clustering::EdgeCollapse, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_clustering(Clustering::EdgeCollapse);
     let extraction = extract(&*field, &lattice, &settings, &Execution { threads })?;
     let (counts, times) = (extraction.counts, extraction.times);
     let s = |time: std::time::Duration| time.as_secs_f64();

@@ -23,7 +23,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gyroid = Gyroid { frequency: 3.0 * std::f32::consts::TAU };
     let at = |i: usize| Vec3::from_array([i % n, i / n % n, i / n / n].map(|x| x as f32 / side));
     let samples: Vec<f32> = (0..n * n * n).map(|i| gyroid.sample(at(i))).collect();
-    let cubes = |faces, diagonals| Method::Cubes(Cubes { faces, diagonals, ..Cubes::default() });
+    let cubes =
+        |faces, diagonals| Method::Cubes(Cubes::default().with_faces(faces).with_diagonals(diagonals));
     println!("{n}^3 samples of a gyroid, {threads} threads, best of {ROUNDS}");
     println!(
         "{:<28} {:>10} {:>8} {:>9} {:>9} {:>7} {:>8}",
@@ -38,10 +39,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("snapped", Method::SnapCubes(SnapCubes::default())),
         (
             "simple cubic tetrahedra",
-            Method::Tetrahedra(Tetrahedra {
-                clustering: isostudy_extract::Clustering::None,
-                ..Tetrahedra::new(Arrangement::SimpleCubic)
-            }),
+            Method::Tetrahedra(
+                Tetrahedra::new(Arrangement::SimpleCubic).with_clustering(isostudy_extract::Clustering::None),
+            ),
         ),
     ] {
         let (mut extractor, mut best, mut mesh) = (Extractor::new(), Duration::MAX, None);

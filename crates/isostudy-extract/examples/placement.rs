@@ -49,8 +49,9 @@ fn main() {
                 for refine_crossings in [false, true] {
                     let id = format!("{name}, {arrangement:?}");
                     if id.contains(&wanted) {
-                        let settings =
-                            ExtractSettings { placement, refine_crossings, ..ExtractSettings::default() };
+                        let settings = ExtractSettings::default()
+                            .with_placement(placement)
+                            .with_refine_crossings(refine_crossings);
                         row(&id, &**field, &lattice, &settings);
                     }
                 }

@@ -13,13 +13,13 @@ use seam_survey::{CELL, Found, Kind, RESOLVED, Random, shape, survey, world};
 
 fn main() {
     let worlds: u64 = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(200);
-    let nets = Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 });
-    let dc = DualContouring { patches: false, ..DualContouring::default() };
+    let nets = Method::SurfaceNets(SurfaceNets::default());
+    let dc = DualContouring::default();
     let all = [
         ("mc", Method::Cubes(Cubes::default())),
         ("nets", nets),
-        ("dc", Method::DualContouring(DualContouring { in_cell: false, ..dc })),
-        ("dc in cells", Method::DualContouring(DualContouring { in_cell: true, ..dc })),
+        ("dc", Method::DualContouring(dc.with_in_cell(false))),
+        ("dc in cells", Method::DualContouring(dc.with_in_cell(true))),
     ];
     println!(
         "| method | shape | worlds | seam triangles | turned | of these, seen by the fine level alone | worlds with a turned one | other triangles turned | intersecting pairs | the most in a world | worlds with a pair |"

@@ -29,7 +29,7 @@ fn main() {
                         continue;
                     }
                     let values = values.get_or_insert_with(|| samples(field, &lattice));
-                    let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+                    let settings = ExtractSettings::default().with_clustering(clustering);
                     let (mut extractor, mut extraction) = (Extractor::new(), Extraction::default());
                     let mut best: Option<(f64, Extraction)> = None;
                     let mut walls = Vec::new();

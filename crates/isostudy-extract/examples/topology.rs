@@ -44,7 +44,7 @@ fn row(
 ) {
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let lattice = Lattice::try_new(arrangement, bounds, 0.04).expect("a lattice");
-    let settings = ExtractSettings { clustering, topology: guard, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_clustering(clustering).with_topology(guard);
     let extraction = extract(field, &lattice, &settings, &Execution { threads: 1 }).expect("a surface");
     let mesh = extraction.mesh;
     let report = topology(&mesh);

@@ -22,6 +22,7 @@
 //!
 //! [`Extractor::extract_into`](crate::Extractor::extract_into) is the same with buffers that are kept.
 
+#[cfg(feature = "tetrahedra")]
 pub use crate::extractor::extract;
 pub use crate::lattice::Lattice;
 pub use crate::settings::ExtractSettings;

@@ -7,6 +7,7 @@ mod labels;
 mod layout;
 mod part;
 mod piece;
+pub(crate) mod relative;
 mod settings;
 mod settled;
 mod touched;

@@ -89,9 +89,14 @@ pub(crate) fn extract(
     let run = Run { request, progress, trace: Some(&mut *trace), extraction: &mut *extraction };
     extract_unmoved(buffers, nets, run)?;
     match sharp_and_merged {
+        #[cfg(feature = "dual-contouring")]
         Some(sharp) => octree::simplify(request, sharp, tolerance, trace, extraction),
+        #[cfg(feature = "blocky")]
         None if are_squares_merged => rectangles::merge(trace, extraction),
+        #[cfg(feature = "surface-nets")]
         None => relaxed::relax(request, smoothing, trace, extraction),
+        #[cfg(not(all(feature = "dual-contouring", feature = "surface-nets")))]
+        _ => unreachable!("its family is not built"),
     }
 }
 
@@ -104,7 +109,7 @@ fn extract_unmoved(
     let placer = Placer::new(request.lattice, request.settings, None);
     let grid = kept.grid(request, 1)?;
     // By tangent planes, if there is a field to have them.
-    let by_planes = sharp.zip(request.level());
+    let by_planes = if cfg!(feature = "dual-contouring") { sharp.zip(request.level()) } else { None };
     let (source, isovalue) = (request.source, request.settings.isovalue);
     let sampling = Sampling { grid: &grid, source, isovalue, all_corners: false };
     kept.stream(

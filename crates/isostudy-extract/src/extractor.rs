@@ -16,9 +16,8 @@ use crate::slabs::Progress;
 use crate::slabs::{Run, threads_and_slabs};
 use crate::source::{Request, Sampler, Source};
 use crate::surface::trace::Trace;
-use crate::tetrahedra::by_cell::CellStreamer;
-use crate::tetrahedra::dense;
-use crate::tetrahedra::streamed::Streamer;
+#[cfg(feature = "tetrahedra")]
+use crate::tetrahedra::{by_cell::CellStreamer, dense, streamed::Streamer};
 use ways::CubeStreamer;
 pub(crate) use ways::Way;
 
@@ -27,7 +26,7 @@ pub(crate) use ways::Way;
 /// With indexed positions it streams: memory grows with a layer of the lattice and with the mesh. From the second
 /// volume of a size on, with one thread, unless edges are collapsed or vertices placed otherwise than at the mean of
 /// interpolated crossings, [`extract_into`](Self::extract_into) allocates nothing, as long as the surface does not
-/// outgrow those before it; an [`Asteroid`](isostudy_field::Asteroid) other than the one before has its tables made again.
+/// outgrow those before it; an `Asteroid` of `isostudy_field` other than the one before has its tables made again.
 ///
 /// ```
 /// use isostudy_extract::by_lattice::{ExtractSettings, Lattice};
@@ -49,7 +48,9 @@ pub(crate) use ways::Way;
 /// ```
 #[derive(Default)]
 pub struct Extractor {
+    #[cfg(feature = "tetrahedra")]
     streamer: Streamer,
+    #[cfg(feature = "tetrahedra")]
     cell_streamer: CellStreamer,
     cube_streamer: CubeStreamer,
     kept: FieldCache,
@@ -57,6 +58,8 @@ pub struct Extractor {
     /// Where the last mesh came from, if `traced`.
     pub(crate) trace: Trace,
     pub(crate) traced: bool,
+    /// Whether meshes have no normals.
+    pub(crate) without_normals: bool,
     pub(crate) most_vertices: MostVertices,
 }
 
@@ -84,10 +87,11 @@ impl Extractor {
         self
     }
 
-    /// Extracts a surface, as [`extract`](crate::by_lattice::extract).
+    /// Extracts a surface by marching tetrahedra, as [`extract`](crate::by_lattice::extract).
     ///
     /// # Errors
     /// As [`extract_into`](Self::extract_into).
+    #[cfg(feature = "tetrahedra")]
     pub fn extract<'c>(
         &mut self,
         source: Source,
@@ -100,12 +104,13 @@ impl Extractor {
         Ok(extraction)
     }
 
-    /// Extracts a surface into `extraction`, whose vectors are used again. After an error it is empty.
+    /// Extracts a surface by marching tetrahedra into `extraction`, whose vectors are used again. After an error it is empty.
     ///
     /// # Errors
     /// As [`extract`](crate::by_lattice::extract); [`ExtractError::Cancelled`]; [`ExtractError::SampleCount`] when given samples are not as many as the
     /// lattice has, [`ExtractError::SamplesAccumulated`] when they come with accumulated positions,
     /// [`ExtractError::PlacementNeedsField`] when they come with a placement that calls the field.
+    #[cfg(feature = "tetrahedra")]
     pub fn extract_into<'c>(
         &mut self,
         source: Source,
@@ -205,6 +210,7 @@ impl Extractor {
         control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
+        #[cfg(feature = "tetrahedra")]
         if settings.positions != Positions::Indexed {
             *extraction = dense::extract(field, lattice, settings, control, self.most_vertices.0)?;
             return Ok(());
@@ -227,15 +233,18 @@ impl Extractor {
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
         let most_vertices = self.most_vertices.0;
-        let request = Request { source, lattice, settings, control, most_vertices, start };
+        let with_normals = !self.without_normals;
+        let request = Request { source, lattice, settings, control, most_vertices, with_normals, start };
         let trace = self.traced.then_some(&mut self.trace);
         let run = Run { request: &request, progress: self.progress.as_deref(), trace, extraction };
-        if let Some(way) = cubes {
-            self.cube_streamer.extract(way, run)
-        } else if lattice.arrangement().uniform().is_some() {
-            self.streamer.extract(run)
-        } else {
-            self.cell_streamer.extract(run)
+        match cubes {
+            Some(way) => self.cube_streamer.extract(way, run),
+            #[cfg(feature = "tetrahedra")]
+            None if lattice.arrangement().uniform().is_some() => self.streamer.extract(run),
+            #[cfg(feature = "tetrahedra")]
+            None => self.cell_streamer.extract(run),
+            #[cfg(not(feature = "tetrahedra"))]
+            None => unreachable!("all families but tetrahedra are made of cubes"),
         }
     }
 }
@@ -248,6 +257,7 @@ impl Extractor {
 /// # Errors
 /// [`ExtractError`] if the settings are not valid, memory or threads are not to be had, or there are too many
 /// vertices.
+#[cfg(feature = "tetrahedra")]
 pub fn extract(
     field: &dyn StudyField,
     lattice: &Lattice,

@@ -18,7 +18,9 @@ mod filling;
 mod layer;
 mod neighbours;
 mod stitching;
+mod windows;
 
 pub use error::LevelError;
 pub use extractor::LevelExtractor;
 pub use neighbours::Neighbours;
+pub use windows::LevelWindow;

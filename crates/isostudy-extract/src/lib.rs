@@ -17,10 +17,8 @@
 //! A [`Method`] is a family with its settings, as plain data; [`presets`] have names. It takes a field or samples on a [`BoxGrid`]:
 //!
 //! ```
-//! use glam::Vec3;
 //! use isostudy_extract::{Arrangement, BoxGrid, Execution, Extractor, Method, Source, Tetrahedra};
-//! use isostudy_field::Sphere;
-//! use isostudy_mesh::Bounds;
+//! use isostudy_extract::{Bounds, Sphere, glam::Vec3};
 //!
 //! let method = Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred));
 //! let grid = BoxGrid { bounds: Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) }, spacing: 0.1 };
@@ -155,13 +153,14 @@
 //! | a chunk beyond the lattice, or without a cell | [`ChunkError::Cells`] |
 //! | chunks with refined crossings, weights by curvature, or moves after edge collapse | [`ChunkError::Placement`] |
 //! | chunks of different fields, or one twice | [`WeldError::Mismatch`], [`WeldError::Overlap`] |
+//! | chunks with relative positions, welded | [`WeldError::Relative`] |
 //! | levels of neighbours that differ by more than one | [`LevelError::Step`] |
 //! | memory that is not there | [`ExtractError::OutOfMemory`], [`ExtractError::NoMemoryForMesh`] |
 //! | more than 2^32 - 1 vertices | [`ExtractError::TooManyVertices`] |
 //!
 //! What grows with the lattice or with the mesh is asked for. Not asked for, so that without it the process ends, are
-//! tables of one size (under 1 MiB, and up to 8 MiB for an [`Asteroid`](isostudy_field::Asteroid)), what the threads need to start and to share
-//! work, what a [`MeshDistance`](isostudy_field::MeshDistance) holds of its mesh, and, with accumulated positions, the pages of the lattice, which was
+//! tables of one size (under 1 MiB, and up to 8 MiB for an `Asteroid` of `isostudy_field`), what the threads need to start and to share
+//! work, what a `MeshDistance` of it holds of its mesh, and, with accumulated positions, the pages of the lattice, which was
 //! asked for as a whole before. Systems that promise more memory than they have can still end the process.
 //!
 //! A sample that is `NaN` is outside and leaves the crossings round it to the inside end, in the middle of their
@@ -185,6 +184,12 @@
 //! - Costen: dissertation and program (2026). The evaluation this repeats: rules, fields, sizes and
 //!   the numbers that the tests compare with.
 
+// Passes that families share are in every build, whichever families it has: what none of them takes is left out by the linker.
+#![cfg_attr(
+    not(feature = "all-families"),
+    allow(dead_code, unreachable_patterns, unused_imports, unused_variables)
+)]
+
 // The fields, the survey and the bunny of the integration tests, for the tests that need to see inside.
 #[cfg(test)]
 extern crate self as isostudy_extract;
@@ -198,11 +203,22 @@ mod fields;
 #[path = "../tests/it/survey.rs"]
 mod survey;
 
+// The code of pages that the documentation does not show.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
+#[cfg(doctest)]
+#[doc = include_str!("../docs/versions.md")]
+mod versions {}
+
 /// The extractor in a game: from a field to terrain that is dug, and what each call costs.
-#[doc = include_str!("../../../docs/engine.md")]
+///
+/// Its links lead to pages in the folder `docs` of the crate.
+#[doc = include_str!("../docs/engine.md")]
 pub mod engine {}
 
 pub mod active;
+mod builders;
 pub mod by_lattice;
 mod chunks;
 mod clock;
@@ -214,6 +230,8 @@ mod extraction;
 mod extractor;
 mod lattice;
 mod levels;
+// It looks for the isosurface by tetrahedra.
+#[cfg(feature = "tetrahedra")]
 mod measure;
 mod memory;
 mod method;
@@ -237,12 +255,16 @@ pub use duals::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume
 pub use execution::{Control, Jobs, Threads};
 pub use extraction::{Counts, ExtractError, Extraction, StageTimes, TetrahedraCounts};
 pub use extractor::Extractor;
+pub use glam;
+pub use isostudy_cells as cells;
 pub use isostudy_field::{
-    Aabb, Bound, FieldFault, FromFn, ScalarField, StoredSamples, StudyField, UnreadSamples, check_field,
-    from_fn,
+    self as field, Aabb, Bound, FieldFault, FromFn, ScalarField, Sphere, StoredSamples, StudyField,
+    UnreadSamples, check_field, from_fn,
 };
+pub use isostudy_mesh::{self as mesh, Bounds, TriangleMesh};
 pub use lattice::{Arrangement, BoxGrid, CellBox, Grid, GridError, LatticeError};
-pub use levels::{LevelError, LevelExtractor, Neighbours};
+pub use levels::{LevelError, LevelExtractor, LevelWindow, Neighbours};
+#[cfg(feature = "tetrahedra")]
 pub use measure::{
     Accuracy, DistanceError, IsosurfacePoints, accuracy, accuracy_beside, distances, normal_errors_deg,
     triangle_distances,

@@ -11,6 +11,7 @@ pub use volume_cells::{VolumeCells, VolumeCellsError};
 use std::fmt;
 
 use crate::cubes::cells_otherwise;
+use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::Extractor;
 use crate::lattice::{Arrangement, Border, BoxGrid, CellBox, Lattice, LatticeError};
@@ -19,14 +20,14 @@ use crate::source::Source;
 use crate::wording::in_words;
 use isostudy_field::StudyField;
 
-/// Names every family once: its settings, what files call its kind, and the file that has both, with its presets.
+/// Names every family once: its settings, what files and features call its kind, and the file that has both, with its presets.
 macro_rules! families {
     ($(#[$about:meta])* Method: $($(#[$of:meta])* $family:ident = $kind:literal in $file:ident,)*) => {
-        $(mod $file;)*
+        $(#[cfg(feature = $kind)] mod $file;)*
 
         /// The settings of each family.
         pub(crate) mod families {
-            $(pub use super::$file::$family;)*
+            $(#[cfg(feature = $kind)] pub use super::$file::$family;)*
         }
         pub(crate) use families::*;
 
@@ -36,24 +37,24 @@ macro_rules! families {
         #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
         #[cfg_attr(feature = "serde", serde(tag = "kind"))]
         pub enum Method {
-            $($(#[$of])* #[cfg_attr(feature = "serde", serde(rename = $kind))] $family($family),)*
+            $(#[cfg(feature = $kind)] $(#[$of])* #[cfg_attr(feature = "serde", serde(rename = $kind))] $family($family),)*
         }
 
         /// The kinds there are, in the order of their presets.
-        static KINDS: &[Kind] = &[$(Kind { name: $kind, presets: $file::PRESETS },)*];
+        static KINDS: &[Kind] = &[$(#[cfg(feature = $kind)] Kind { name: $kind, presets: $file::PRESETS },)*];
 
         impl Method {
             /// What its family says of it.
             pub(crate) fn family(&self) -> &dyn Family {
                 match self {
-                    $(Self::$family(of) => of,)*
+                    $(#[cfg(feature = $kind)] Self::$family(of) => of,)*
                 }
             }
 
             /// What a file calls the method's [kind](kinds).
             pub fn kind(&self) -> &'static str {
                 match self {
-                    $(Self::$family(_) => $kind,)*
+                    $(#[cfg(feature = $kind)] Self::$family(_) => $kind,)*
                 }
             }
         }
@@ -69,12 +70,10 @@ families! {
     /// Unknown keys are refused.
     ///
     /// ```
-    /// use isostudy_extract::{Arrangement, BoxGrid, Execution, Extractor, Method, Placement, Tetrahedra};
-    /// use isostudy_field::{StudyField, Sphere};
-    /// # use glam::Vec3;
-    /// # use isostudy_mesh::Bounds;
+    /// use isostudy_extract::{Arrangement, BoxGrid, Execution, Extractor, Method, Placement, StudyField, Sphere, Tetrahedra};
+    /// # use isostudy_extract::{Bounds, glam::Vec3};
     ///
-    /// let relaxed = Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
+    /// let relaxed = Tetrahedra::new(Arrangement::BodyCentred).with_placement(Placement::Relaxed);
     /// let method = Method::Tetrahedra(relaxed);
     /// let grid = BoxGrid { bounds: Bounds { min: Vec3::splat(-1.1), max: Vec3::splat(1.1) }, spacing: 0.1 };
     /// let sphere: &dyn StudyField = &Sphere { radius: 1.0 };
@@ -295,21 +294,22 @@ impl Method {
         self.family().is_for_comparison()
     }
 
-    /// Extracts the surface where `source` has the isovalue into `extraction`, whose vectors are used again. After an error
-    /// it is empty. `execution` changes nothing about the mesh.
+    /// Extracts the surface where `source` has the isovalue into `extraction`, whose vectors are used again. `control` is an [`Execution`],
+    /// or a [`Control`] with jobs, a flag that cancels, and somebody to be told of progress. After an error
+    /// it is empty. `control` changes nothing about the mesh.
     ///
     /// # Errors
     /// As [`check`](Self::check), and [`MethodError::Extract`] as [`Extractor::extract_into`].
-    pub fn extract_into(
+    pub fn extract_into<'c>(
         &self,
         extractor: &mut Extractor,
         source: Source,
         grid: &BoxGrid,
         isovalue: f32,
-        execution: &Execution,
+        control: impl Into<Control<'c>>,
         extraction: &mut Extraction,
     ) -> Result<(), MethodError> {
-        let result = self.try_extract_into(extractor, source, grid, isovalue, execution, extraction);
+        let result = self.try_extract_into(extractor, source, grid, isovalue, control.into(), extraction);
         if result.is_err() {
             extraction.clear();
         }
@@ -322,7 +322,7 @@ impl Method {
         source: Source,
         grid: &BoxGrid,
         isovalue: f32,
-        execution: &Execution,
+        control: Control,
         extraction: &mut Extraction,
     ) -> Result<(), MethodError> {
         let family = self.family();
@@ -335,7 +335,6 @@ impl Method {
         // Before the lattice, as in `check`.
         check(&settings, family.arrangement())?;
         let lattice = self.lattice(grid)?;
-        let control = execution.into();
         Ok(extractor.extract_by(family.way(), source, &lattice, &settings, control, extraction)?)
     }
 
@@ -348,16 +347,16 @@ impl Method {
     ///
     /// # Errors
     /// The same.
-    pub fn extract(
+    pub fn extract<'c>(
         &self,
         extractor: &mut Extractor,
         source: Source,
         grid: &BoxGrid,
         isovalue: f32,
-        execution: &Execution,
+        control: impl Into<Control<'c>>,
     ) -> Result<Extraction, MethodError> {
         let mut extraction = Extraction::default();
-        self.extract_into(extractor, source, grid, isovalue, execution, &mut extraction)?;
+        self.extract_into(extractor, source, grid, isovalue, control, &mut extraction)?;
         Ok(extraction)
     }
 

@@ -2,7 +2,10 @@
 
 use std::fmt;
 
+use crate::builders::builders;
+
 /// Settings that change the mesh.
+#[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExtractSettings {
     /// Points with a value above this are inside.
@@ -25,9 +28,21 @@ pub struct ExtractSettings {
     pub edge_clamp: f32,
 }
 
-impl Default for ExtractSettings {
+builders! {
+    ExtractSettings {
+        with_isovalue: isovalue: f32,
+        with_clustering: clustering: Clustering,
+        with_topology: topology: Topology,
+        with_positions: positions: Positions,
+        with_placement: placement: Placement,
+        with_refine_crossings: refine_crossings: bool,
+        with_edge_clamp: edge_clamp: f32,
+    }
+}
+
+impl ExtractSettings {
     /// Isovalue 0, integrated clustering, guarded topology, indexed positions, means of interpolated crossings, none of them kept away.
-    fn default() -> Self {
+    pub const fn new() -> Self {
         Self {
             isovalue: 0.0,
             clustering: Clustering::Integrated,
@@ -37,6 +52,13 @@ impl Default for ExtractSettings {
             refine_crossings: false,
             edge_clamp: 0.0,
         }
+    }
+}
+
+impl Default for ExtractSettings {
+    /// As [`new`](Self::new).
+    fn default() -> Self {
+        Self::new()
     }
 }
 

@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use self::assembling::assemble;
 use crate::clock::Moment;
 use crate::execution::control::Threads;
-use crate::execution::threads::on_each;
+use crate::execution::threads::{ARE_THERE, on_each};
 use crate::extraction::{ExtractError, Extraction};
 use crate::source::Request;
 use crate::surface::trace::Trace;
@@ -65,6 +65,9 @@ pub(crate) trait Streamed: Sync + Sized {
 
 /// How many threads there is work for, and how many slabs they share.
 pub(crate) fn threads_and_slabs(threads: usize, layers: usize) -> (usize, usize) {
+    if !ARE_THERE {
+        return (1, 1);
+    }
     let most = (layers / LEAST_LAYERS).max(1);
     let slabs = if threads == 1 { 1 } else { threads.saturating_mul(SLABS_PER_THREAD).min(most) };
     (threads.min(slabs), slabs)
@@ -141,6 +144,9 @@ fn on_slabs<W: Send>(
     let slab = |i: usize| i * layers / slabs..(i + 1) * layers / slabs;
     if let ([workspace], [piece]) = (&mut *workspaces, &mut *pieces) {
         return work(slab(0), workspace, piece);
+    }
+    if !ARE_THERE {
+        unreachable!("there is one slab for one thread");
     }
     let queue = Mutex::new(pieces.iter_mut().enumerate());
     let work = |workspace: &mut W| -> Result<(), ExtractError> {

@@ -87,6 +87,8 @@ pub(crate) struct Request<'a> {
     pub(crate) settings: &'a ExtractSettings,
     pub(crate) control: Control<'a>,
     pub(crate) most_vertices: u32,
+    /// Whether anybody looks at normals.
+    pub(crate) with_normals: bool,
     /// When it began.
     pub(crate) start: Moment,
 }

@@ -48,7 +48,7 @@ fn limits() {
 
 /// Of a lattice of which a sixtieth would be too much if it were stored.
 fn lattices_cut_by_cubes_take_what_they_say() {
-    let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_clustering(Clustering::None);
     let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let sphere: &dyn StudyField = &Sphere { radius: 0.8 };
     for arrangement in [Arrangement::FiveTetrahedra, Arrangement::FaceCentred] {
@@ -80,15 +80,11 @@ fn wherever_memory_runs_out_there_is_an_error() {
     let lattice = lattice(0.1);
     let one = Execution { threads: 1 };
     let usual = ExtractSettings::default();
-    let collapsed = |topology, positions| ExtractSettings {
-        clustering: Clustering::EdgeCollapse,
-        topology,
-        positions,
-        ..usual
+    let collapsed = |topology, positions| {
+        usual.with_clustering(Clustering::EdgeCollapse).with_topology(topology).with_positions(positions)
     };
     let (guarded, published) = (Topology::Guarded, Topology::Published);
-    let placed =
-        |placement| ExtractSettings { placement, clustering: Clustering::IntegratedCollapse, ..usual };
+    let placed = |placement| usual.with_placement(placement).with_clustering(Clustering::IntegratedCollapse);
     for settings in [
         collapsed(guarded, Positions::Indexed),
         collapsed(published, Positions::Accumulated { chunks: 16 }),
@@ -181,7 +177,7 @@ impl StudyField for Step {
 
 fn memory_running_out_is_an_error() {
     let settings = ExtractSettings::default();
-    let accumulated = ExtractSettings { positions: Positions::Accumulated { chunks: 16 }, ..settings };
+    let accumulated = settings.with_positions(Positions::Accumulated { chunks: 16 });
     let sphere: &dyn StudyField = &Sphere { radius: 0.8 };
     let wild: &dyn StudyField = &Gyroid { frequency: 40.0 };
     for threads in [1, 2] {

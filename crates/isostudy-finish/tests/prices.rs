@@ -126,7 +126,7 @@ fn what_each_step_gives_for_its_cost() {
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     let tetrahedra = |clustering| {
-        Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(Arrangement::BodyCentred) })
+        Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred).with_clustering(clustering))
     };
     let preset = |id: &str| presets().iter().find(|preset| preset.id == id).expect("a preset").method;
     for object in objects() {

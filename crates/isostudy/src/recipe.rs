@@ -181,7 +181,7 @@ fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
             })?;
             Ok(Recipe::Extractor(match (method, purpose) {
                 (Method::Tetrahedra(of), Purpose::Indexed) => {
-                    Method::Tetrahedra(Tetrahedra { positions: Positions::Indexed, ..of })
+                    Method::Tetrahedra(of.with_positions(Positions::Indexed))
                 }
                 (method, _) => method,
             }))

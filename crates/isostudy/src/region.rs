@@ -76,8 +76,8 @@ mod tests {
 
     fn methods() -> [Method; 2] {
         let clustering = Clustering::Integrated;
-        let tetrahedra = Tetrahedra { clustering, ..Tetrahedra::new(Arrangement::BodyCentred) };
-        let relaxed = Tetrahedra { placement: Placement::Relaxed, ..tetrahedra };
+        let tetrahedra = Tetrahedra::new(Arrangement::BodyCentred).with_clustering(clustering);
+        let relaxed = tetrahedra.with_placement(Placement::Relaxed);
         [Method::Cubes(Cubes::default()), Method::Tetrahedra(relaxed)]
     }
 

@@ -63,10 +63,7 @@ pub(crate) fn in_steps(method: &Method, volume: &Frame) -> Result<Method> {
         }
         points.push(kept.as_vec3().to_array());
     }
-    Ok(Method::Continuation(isostudy_extract::Continuation {
-        seeds: Seeds::try_new(&points)?,
-        ..*continuation
-    }))
+    Ok(Method::Continuation((*continuation).with_seeds(Seeds::try_new(&points)?)))
 }
 
 /// Why a method with given seeds reached no surface; `None` of methods that find every surface.

@@ -25,7 +25,8 @@ use crate::wording::in_words;
 pub struct Chunk {
     /// The cells whose triangles these are.
     pub cells: CellBox,
-    /// Where the vertices are, in the field's coordinates.
+    /// Where the vertices are, in the field's coordinates, or from [`origin`](Self::origin) on
+    /// ([`ChunkSettings::relative`](crate::ChunkSettings::relative)).
     pub positions: Vec<[f32; 3]>,
     /// Outward, of unit length: those of the whole mesh. As many as positions, or none
     /// ([`Normals::None`](crate::Normals)).
@@ -131,6 +132,47 @@ impl Chunk {
         self.bounds
     }
 
+    /// The corners that a vertex lies between, in the grid of the vertex's [level](VertexKey::level): both ends of an edge for a
+    /// crossing of marching cubes, else the lowest and the highest corner of a cell. They follow from the key, and so are the same
+    /// in all chunks that have the vertex.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn corners_of(&self, vertex: usize) -> [[i32; 3]; 2] {
+        let key = self.keys[vertex];
+        if self.world.is_some_and(|world| world.method.family().has_vertices_on_edges()) {
+            return key.ends_of_crossing();
+        }
+        let low = key.cell();
+        [low, low.map(|i| i.saturating_add(1))]
+    }
+
+    /// Something of one's own for each vertex, such as a material, a colour or light, into `payload`, whose room is used again. `of` is told
+    /// the level and the [corners](Self::corners_of) that the vertex lies between. What follows from these alone is the same in all chunks
+    /// that have the vertex, so that no seam shows.
+    ///
+    /// ```
+    /// use isostudy_extract::{ChunkExtractor, ChunkSettings, Control, Cubes, Grid, Method, from_fn};
+    ///
+    /// // Stone below, and sand in the two layers of voxels at the top.
+    /// let ground = from_fn(|[_, _, z]| 5.5 - z);
+    /// let (is_solid, is_sand) = (|[_, _, z]: [i32; 3]| z <= 5, |[_, _, z]: [i32; 3]| z >= 4);
+    ///
+    /// let grid = Grid::try_new([0.0; 3], 1.0)?;
+    /// let mut extractor = ChunkExtractor::try_new(&grid, &Method::Cubes(Cubes::default()), &ChunkSettings::default())?;
+    /// let chunk = extractor.extract(&ground, grid.chunk([0, 0, 0], 8), Control::default())?;
+    /// let mut sand = Vec::new();
+    /// // Of the solid end of its edge.
+    /// chunk.payload(|_, ends| ends.into_iter().find(|&end| is_solid(end)).is_some_and(is_sand), &mut sand);
+    /// assert!(sand.len() == chunk.positions.len() && sand.iter().all(|&is_sand| is_sand));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn payload<T>(&self, mut of: impl FnMut(u32, [[i32; 3]; 2]) -> T, payload: &mut Vec<T>) {
+        payload.clear();
+        let vertices = self.keys.iter().enumerate();
+        payload.extend(vertices.map(|(v, key)| of(key.level(), self.corners_of(v))));
+    }
+
     /// The cell of a triangle, in the whole lattice.
     ///
     /// # Panics
@@ -140,9 +182,11 @@ impl Chunk {
     }
 
     /// Positions less the [`origin`](Self::origin), for a renderer whose origin moves with the player. They are as fine as
-    /// `f32` is at the vertex's own place: at 160,000 units that is 0.016.
+    /// `f32` is at the vertex's own place: at 160,000 units that is 0.016. [`ChunkSettings::relative`](crate::ChunkSettings::relative)
+    /// makes finer ones.
     pub fn relative_positions(&self, relative: &mut Vec<[f32; 3]>) {
-        let origin = self.origin();
+        let is_relative = self.world.is_some_and(|world| world.settings.relative);
+        let origin = if is_relative { [0.0; 3] } else { self.origin() };
         relative.clear();
         relative.extend(
             self.positions.iter().map(|p| [0, 1, 2].map(|axis| (f64::from(p[axis]) - origin[axis]) as f32)),

@@ -35,6 +35,8 @@ pub enum ChunkError {
     EndlessCollapse,
     /// [`Normals::Field`](crate::Normals::Field) of samples.
     NormalsNeedField,
+    /// Positions relative to a chunk in a box.
+    RelativeInBox,
     /// A setting of the method is out of its range.
     Settings(MethodError),
     /// A method without chunks.
@@ -64,6 +66,7 @@ in_words! {
         Self::EndlessSamples => "a grid without an end has no last sample: give a Source::Window";
         Self::EndlessCollapse => "edge collapse needs a box";
         Self::NormalsNeedField => "samples have no gradient between them: Normals::Field needs a field";
+        Self::RelativeInBox => "positions relative to a chunk are for a grid without an end";
         Self::Settings(error) => "{error}";
         Self::Method => "this method makes no chunks";
         Self::Accumulated => "chunks need indexed positions";

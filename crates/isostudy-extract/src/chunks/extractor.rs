@@ -9,10 +9,13 @@ use super::chunk::Chunk;
 use super::error::ChunkError;
 use super::layout::SampleLayout;
 use super::part::cut_out;
+#[cfg(feature = "tetrahedra")]
 use super::piece::collapsed;
+use super::relative::{self, Seen, back};
 use super::settings::{ChunkSettings, Normals};
 use super::settled::{MOST_EXTRA, Settled};
 use super::world::{Place, World};
+#[cfg(feature = "tetrahedra")]
 use crate::clustering::guard::Guard;
 use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
@@ -128,6 +131,9 @@ impl ChunkExtractor {
     /// # Errors
     /// The same, but for [`ChunkError::EndlessCollapse`]; [`ChunkError::Extract`] if the box is no grid for the method, too.
     pub fn in_box(grid: &BoxGrid, method: &Method, settings: &ChunkSettings) -> Result<Self, ChunkError> {
+        if settings.relative {
+            return Err(ChunkError::RelativeInBox);
+        }
         Self::new(Place::Box(*grid), method, settings)
     }
 
@@ -155,11 +161,14 @@ impl ChunkExtractor {
         };
         let mut extractor = Extractor::new();
         extractor.traced = true;
+        let has_normals = world.settings.normals != Normals::None;
+        extractor.without_normals = !has_normals;
+        let family = method.family();
         Ok(Self {
             world,
             how,
             whole,
-            halo: method.family().halo(),
+            halo: if has_normals { family.halo() } else { family.halo_without_normals() },
             extractor,
             extraction: Extraction::default(),
             samples: Vec::new(),
@@ -182,12 +191,42 @@ impl ChunkExtractor {
         trace.keys.try_reserve(vertices)?;
         trace.cells.try_reserve(2 * vertices)?;
         self.numbers.try_reserve(vertices)?;
-        let ByWindow { arrangement, settings, way, .. } = &self.how;
-        let merges = settings.clustering == Clustering::Integrated && settings.topology == Topology::Guarded;
-        if way.is_none() && merges {
-            Guard::get(*arrangement).complete();
-        }
+        self.complete_tables();
         Ok(())
+    }
+
+    /// Makes the tables of the method, and buffers for chunks of so many cells a side, by extracting a ball in one. The first chunk then takes
+    /// as long as any. Nothing that it makes can be seen.
+    ///
+    /// # Errors
+    /// [`ChunkError::Cells`] if there is no such chunk, [`ChunkError::Extract`] if there is no memory.
+    pub fn warm_up(&mut self, cells: u32) -> Result<(), ChunkError> {
+        self.complete_tables();
+        let first = match &self.world.place {
+            Place::Endless(grid) => grid.chunk([0; 3], cells),
+            Place::Box(_) => self.grid(cells).next().unwrap_or_default(),
+        };
+        self.check(first)?;
+        let bounds = self.lattice(first)?.sampled_bounds();
+        let ball = Ball {
+            centre: (bounds.min + bounds.max) * 0.5,
+            radius: 0.4 * bounds.size().min_element(),
+            isovalue: self.how.settings.isovalue,
+        };
+        self.of_field(&ball, first, Control::default(), &mut Chunk::default())
+    }
+
+    /// Makes the tables of integrated clustering that are made otherwise when a point first needs them.
+    fn complete_tables(&self) {
+        #[cfg(feature = "tetrahedra")]
+        {
+            let ByWindow { arrangement, settings, way, .. } = &self.how;
+            let merges =
+                settings.clustering == Clustering::Integrated && settings.topology == Topology::Guarded;
+            if way.is_none() && merges {
+                Guard::get(*arrangement).complete();
+            }
+        }
     }
 
     /// What its chunks are chunks of.
@@ -257,8 +296,55 @@ impl ChunkExtractor {
         control: impl Into<Control<'c>>,
         chunk: &mut Chunk,
     ) -> Result<(), ChunkError> {
-        let control = control.into();
-        let result = match source.into() {
+        let (source, control) = (source.into(), control.into());
+        let result = match self.world.settings.relative {
+            true => self.relative(source, cells, control, chunk),
+            false => self.absolute(source, cells, control, chunk),
+        };
+        if result.is_err() {
+            chunk.clear();
+        }
+        result
+    }
+
+    /// Extracts a box as if it began at the origin.
+    fn relative(
+        &mut self,
+        source: Source,
+        cells: CellBox,
+        control: Control,
+        chunk: &mut Chunk,
+    ) -> Result<(), ChunkError> {
+        self.check(cells)?;
+        let (start, corner) = (cells.start, self.world.position(cells.start));
+        let here = relative::moved(cells, back(start));
+        match source {
+            Source::Field(field) => {
+                let seen = Seen { field, corner };
+                self.absolute(Source::Field(&seen), here, control, chunk)
+            }
+            Source::Study(field) => {
+                let seen = Seen { field, corner };
+                self.absolute(Source::Study(&seen), here, control, chunk)
+            }
+            Source::Window { cells, samples } => {
+                let cells = relative::moved(cells, back(start));
+                self.absolute(Source::Window { cells, samples }, here, control, chunk)
+            }
+            Source::Samples(_) | Source::Stored(_) | Source::Bricks(_) => Err(ChunkError::EndlessSamples),
+        }?;
+        relative::name(chunk, 0, start, self.world);
+        Ok(())
+    }
+
+    fn absolute(
+        &mut self,
+        source: Source,
+        cells: CellBox,
+        control: Control,
+        chunk: &mut Chunk,
+    ) -> Result<(), ChunkError> {
+        match source {
             // In debug builds somebody looks whether it keeps its promises.
             Source::Field(field) if cfg!(debug_assertions) => {
                 self.of_field(&Watched::new(field), cells, control, chunk)
@@ -281,16 +367,12 @@ impl ChunkExtractor {
             },
             // A chunk reads its own window alone.
             Source::Bricks(bricks) => {
-                return self.extract_into(Source::Samples(bricks.samples().values()), cells, control, chunk);
+                self.absolute(Source::Samples(bricks.samples().values()), cells, control, chunk)
             }
             Source::Window { cells: given, samples } => {
                 self.of_samples((given, samples), cells, control, chunk)
             }
-        };
-        if result.is_err() {
-            chunk.clear();
         }
-        result
     }
 
     fn of_samples(
@@ -371,28 +453,7 @@ impl ChunkExtractor {
         let whole = self.check(cells)?;
         let (placement, normals) = (self.how.settings.placement, self.world.settings.normals);
         let Some(halo) = self.halo else {
-            let halo = self.how.halo;
-            let mut margin = halo + FIRST_MARGIN;
-            loop {
-                let window = cells.grown(margin, &whole);
-                let lattice = self.extract_window(given, window, control)?;
-                self.start(chunk, cells, &lattice);
-                chunk.numbered_by_use = true;
-                let (mesh, trace) = (&self.extraction.mesh, &self.extractor.trace);
-                let as_in_whole = window.shrunk(halo, &whole);
-                if collapsed(
-                    mesh,
-                    trace,
-                    &lattice,
-                    as_in_whole,
-                    (self.how.settings.topology, normals),
-                    chunk,
-                )? {
-                    chunk.close();
-                    return Ok(());
-                }
-                margin = margin.saturating_mul(2);
-            }
+            return self.by_growing_windows(given, cells, whole, control, chunk);
         };
         let mut extra = 0;
         loop {
@@ -407,6 +468,7 @@ impl ChunkExtractor {
             } else {
                 let lattice = self.extract_window(given, window, control)?;
                 let is_settled = match given {
+                    #[cfg(any(feature = "tetrahedra", feature = "cubes"))]
                     Given::Field(field) if placement.calls_the_field() => {
                         self.move_vertices(field, cells, &lattice, &whole, control)?
                     }
@@ -428,6 +490,46 @@ impl ChunkExtractor {
         }
     }
 
+    /// Where edges are collapsed: lets the window grow until it holds every piece of surface that enters the chunk.
+    #[cfg(feature = "tetrahedra")]
+    fn by_growing_windows(
+        &mut self,
+        given: Given,
+        cells: CellBox,
+        whole: CellBox,
+        control: Control,
+        chunk: &mut Chunk,
+    ) -> Result<(), ChunkError> {
+        let (halo, normals) = (self.how.halo, self.world.settings.normals);
+        let mut margin = halo + FIRST_MARGIN;
+        loop {
+            let window = cells.grown(margin, &whole);
+            let lattice = self.extract_window(given, window, control)?;
+            self.start(chunk, cells, &lattice);
+            chunk.numbered_by_use = true;
+            let (mesh, trace) = (&self.extraction.mesh, &self.extractor.trace);
+            let as_in_whole = window.shrunk(halo, &whole);
+            let looks = (self.how.settings.topology, normals);
+            if collapsed(mesh, trace, &lattice, as_in_whole, looks, chunk)? {
+                chunk.close();
+                return Ok(());
+            }
+            margin = margin.saturating_mul(2);
+        }
+    }
+
+    #[cfg(not(feature = "tetrahedra"))]
+    fn by_growing_windows(
+        &mut self,
+        _: Given,
+        _: CellBox,
+        _: CellBox,
+        _: Control,
+        _: &mut Chunk,
+    ) -> Result<(), ChunkError> {
+        unreachable!("only tetrahedra have edges that collapse")
+    }
+
     /// All cells that there are.
     fn check(&self, cells: CellBox) -> Result<CellBox, ChunkError> {
         let whole = match &self.whole {
@@ -444,7 +546,10 @@ impl ChunkExtractor {
     fn lattice(&self, cells: CellBox) -> Result<Lattice, ChunkError> {
         match (&self.whole, &self.world.place) {
             (Some(whole), _) => Ok(whole.window(cells)?),
-            (None, Place::Endless(grid)) => Ok(Lattice::endless(self.how.arrangement, grid, cells)?),
+            (None, Place::Endless(grid)) => {
+                let grid = if self.world.settings.relative { grid.from_origin() } else { *grid };
+                Ok(Lattice::endless(self.how.arrangement, &grid, cells)?)
+            }
             (None, Place::Box(grid)) => Ok(grid.lattice(self.how.arrangement)?.window(cells)?),
         }
     }
@@ -525,6 +630,7 @@ impl ChunkExtractor {
 
     /// Moves the vertices of a window to where the placement wants them. `false` if it is not large enough to know for all
     /// that the chunk depends on.
+    #[cfg(any(feature = "tetrahedra", feature = "cubes"))]
     fn move_vertices(
         &mut self,
         field: &dyn StudyField,
@@ -551,9 +657,24 @@ impl ChunkExtractor {
             [known, wanted],
         )?;
         mesh.normals.clear();
-        refill(&mut mesh.normals, mesh.positions.len(), Vec3::ZERO)?;
-        accumulate(&mesh.positions, &mesh.triangles, &mut mesh.normals);
+        if self.world.settings.normals != Normals::None {
+            refill(&mut mesh.normals, mesh.positions.len(), Vec3::ZERO)?;
+            accumulate(&mesh.positions, &mesh.triangles, &mut mesh.normals);
+        }
         Ok(is_settled)
+    }
+}
+
+/// A ball that is there to be extracted once.
+struct Ball {
+    centre: Vec3,
+    radius: f32,
+    isovalue: f32,
+}
+
+impl StudyField for Ball {
+    fn sample(&self, p: Vec3) -> f32 {
+        self.isovalue + self.radius - (p - self.centre).length()
     }
 }
 

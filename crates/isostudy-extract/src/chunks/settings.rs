@@ -8,12 +8,23 @@ pub struct ChunkSettings {
     pub isovalue: f32,
     /// Where normals come from.
     pub normals: Normals,
+    /// Whether positions, and the box of [`Chunk::bounds`](crate::Chunk::bounds), are relative to the lowest corner of the chunk's own cells,
+    /// [`Chunk::origin`](crate::Chunk::origin). They are as fine then as near the origin, however far away the chunk is. Positions of
+    /// neighbours, put into one place, may differ by two units in the last place of such positions; their keys do not. Such chunks do not
+    /// [weld](crate::weld_chunks). A field is asked in single precision, and is no finer than that: samples are. Needs a
+    /// [`Grid`](crate::Grid) without an end.
+    pub relative: bool,
 }
 
 impl ChunkSettings {
     /// The same with an isovalue.
     pub fn with_isovalue(self, isovalue: f32) -> Self {
         Self { isovalue, ..self }
+    }
+
+    /// The same with positions relative to the chunk's corner, or not.
+    pub fn with_relative_positions(self, relative: bool) -> Self {
+        Self { relative, ..self }
     }
 
     /// The same with other normals.

@@ -21,6 +21,8 @@ pub enum WeldError {
         /// What they are chunks of.
         worlds: Box<[World; 2]>,
     },
+    /// Positions are relative to each chunk: see [`ChunkSettings::relative`](crate::ChunkSettings::relative).
+    Relative,
     /// Two chunks of one level have triangles of one cell.
     Overlap {
         /// The cell.
@@ -38,6 +40,7 @@ pub enum WeldError {
 in_words! {
     WeldError {
         Self::Worlds { worlds } => "chunks of two worlds: {}; and {}", worlds[0], worlds[1];
+        Self::Relative => "the positions are relative to each chunk, and no positions of one mesh";
         Self::Overlap { cell } => "cell {cell:?} is in two of the chunks";
         Self::Mismatch(error) => "{error}";
         Self::TooManyVertices => "the chunks have more than {} vertices", u32::MAX;
@@ -80,7 +83,7 @@ impl From<TryReserveError> for WeldError {
 /// were never extracted are left out. Of chunks of [several levels](crate::LevelExtractor) it makes one mesh, finer levels first.
 ///
 /// # Errors
-/// [`WeldError::Worlds`], [`WeldError::Overlap`] and [`WeldError::Mismatch`] if the chunks are not of one extraction. Two
+/// [`WeldError::Worlds`], [`WeldError::Relative`], [`WeldError::Overlap`] and [`WeldError::Mismatch`] if the chunks are not of one extraction. Two
 /// fields that agree wherever their chunks meet cannot be told from one.
 pub fn weld_chunks<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Result<TriangleMesh, WeldError> {
     let mut in_order: Vec<&Chunk> = chunks.into_iter().filter(|chunk| chunk.world.is_some()).collect();
@@ -90,6 +93,9 @@ pub fn weld_chunks<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Result<Tr
         {
             return Err(WeldError::Worlds { worlds: Box::new([first, second]) });
         }
+    }
+    if in_order.iter().any(|chunk| chunk.world.is_some_and(|world| world.settings.relative)) {
+        return Err(WeldError::Relative);
     }
     let from_below = |[x, y, z]: [i32; 3]| [z, y, x];
     in_order.sort_by_key(|chunk| from_below(chunk.cells.start));

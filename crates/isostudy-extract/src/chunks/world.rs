@@ -59,6 +59,11 @@ impl World {
         Self { place: Place::Endless(grid.finer(level)), level: Some(0), ..self }
     }
 
+    /// Of chunks of a level, whose grid is given.
+    pub(crate) fn of_level(grid: Grid, method: Method, settings: ChunkSettings, level: u32) -> Self {
+        Self { place: Place::Endless(grid), method, settings, level: Some(level) }
+    }
+
     /// The lowest corner of a cell.
     pub(super) fn position(&self, cell: [i32; 3]) -> [f64; 3] {
         match &self.place {
@@ -80,8 +85,11 @@ impl fmt::Display for World {
                 write!(f, "cells of {spacing} in the box {min:?} to {max:?}")?;
             }
         }
-        let ChunkSettings { isovalue, normals } = self.settings;
+        let ChunkSettings { isovalue, normals, relative } = self.settings;
         write!(f, " with isovalue {isovalue} and normals {normals:?} by {:?}", self.method)?;
+        if relative {
+            f.write_str(" relative to each chunk")?;
+        }
         match self.level {
             Some(level) => write!(f, " at level {level}"),
             None => Ok(()),

@@ -41,7 +41,7 @@ pub(crate) fn extract(
     rule: Rule,
     Run { request, progress, extraction, .. }: Run,
 ) -> Result<(), ExtractError> {
-    let Request { source, lattice, settings, control, most_vertices, start } = *request;
+    let Request { source, lattice, settings, control, most_vertices, start, .. } = *request;
     let out_of_memory = |_: TryReserveError| ExtractError::NoMemoryForMesh;
     let grid = &CubeGrid::new(lattice).map_err(out_of_memory)?;
     let mut corners = Corners::new(grid, source, settings.isovalue);

@@ -13,6 +13,7 @@ use isostudy_mesh::{LabelledMesh, TriangleMesh};
 
 use super::quads::{CORNERS, Quadrilateral};
 use super::relaxed::{MOST_SMOOTHING, relax_positions};
+use crate::builders::builders;
 use crate::execution::control::Control;
 use crate::extraction::ExtractError;
 use crate::lattice::CellBox;
@@ -42,7 +43,8 @@ pub struct LabelVolume<'a> {
 }
 
 /// What decides the boundaries of labels. By default all labels, no smoothing, open where they leave the volume.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LabelSettings<'a> {
     /// The labels that count; all others are background. All count if there are none.
     pub only: &'a [u32],
@@ -50,6 +52,28 @@ pub struct LabelSettings<'a> {
     pub smoothing: u32,
     /// Whether there is background beyond the volume, so that boundaries are closed half a step beyond its last labels.
     pub close: bool,
+}
+
+builders! {
+    LabelSettings<'a> {
+        with_only: only: &'a [u32],
+        with_smoothing: smoothing: u32,
+        with_close: close: bool,
+    }
+}
+
+impl<'a> LabelSettings<'a> {
+    /// As [`Default`].
+    pub const fn new() -> Self {
+        Self { only: &[], smoothing: 0, close: false }
+    }
+}
+
+impl<'a> Default for LabelSettings<'a> {
+    /// As [`new`](Self::new).
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 /// How many samples have a label.

@@ -91,8 +91,8 @@ fn is_other_shorter([a, b, c, d]: [Vec3; 4]) -> bool {
 pub(crate) fn is_other_better(level: Option<Level>, corners: [Vec3; 4]) -> bool {
     let is_shorter = is_other_shorter(corners);
     match level {
-        None => is_shorter,
-        Some(level) => is_other_sharper(level, corners, is_shorter),
+        Some(level) if cfg!(feature = "dual-contouring") => is_other_sharper(level, corners, is_shorter),
+        _ => is_shorter,
     }
 }
 

@@ -81,6 +81,17 @@ pub(super) fn relax_positions(
     Ok(())
 }
 
+/// Sorts a few numbers. What sorts many is 4 kB in a module for a page.
+fn in_order(numbers: &mut [u32]) {
+    for end in 1..numbers.len() {
+        let mut at = end;
+        while at > 0 && numbers[at - 1] > numbers[at] {
+            numbers.swap(at - 1, at);
+            at -= 1;
+        }
+    }
+}
+
 /// The vertices that each vertex is linked to, by ascending number, once each.
 struct Links {
     /// Where those of a vertex begin and end.
@@ -115,7 +126,7 @@ impl Links {
         }
         for [start, end] in &mut ranges {
             let own = &mut others[*start as usize..*end as usize];
-            own.sort_unstable();
+            in_order(own);
             // Most sides are two quadrilaterals'.
             let mut count = 0;
             for i in 0..own.len() {

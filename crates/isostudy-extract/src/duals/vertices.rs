@@ -85,7 +85,10 @@ impl VertexPass<'_> {
                                 let values = std::array::from_fn(|c| values[c >> 1][x + (c & 1)]);
                                 self.mean([[grid.at[0][x], grid.at[0][x + 1]], ys, zs], values, mean)
                             }
+                            #[cfg(feature = "dual-contouring")]
                             Some((sharp, tangents)) => self.meeting(plans, cell, mean.set, *sharp, tangents),
+                            #[cfg(not(feature = "dual-contouring"))]
+                            Some(_) => unreachable!("planes are for dual contouring"),
                         };
                         push(&mut vertices.positions, position)?;
                         if let Some(keys) = &mut vertices.keys {

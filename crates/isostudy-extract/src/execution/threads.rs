@@ -9,6 +9,9 @@ use crate::execution::control::Threads;
 use crate::extraction::ExtractError;
 use crate::settings::Execution;
 
+/// Whether a program can have more threads than one: not in a module of WebAssembly without atomics.
+pub(crate) const ARE_THERE: bool = cfg!(not(all(target_family = "wasm", not(target_feature = "atomics"))));
+
 /// The fewest items that are worth a thread.
 pub(crate) const SHARE: usize = 256;
 
@@ -31,7 +34,7 @@ pub(crate) fn in_parts<T: Send>(
     each: usize,
     work: impl Fn(usize, &mut [T]) -> Result<(), ExtractError> + Sync,
 ) -> Result<(), ExtractError> {
-    let most = threads.count().min(items.len().div_ceil(each));
+    let most = if ARE_THERE { threads.count().min(items.len().div_ceil(each)) } else { 1 };
     let parts = items.chunks_mut(each).enumerate();
     if most <= 1 {
         return parts.into_iter().try_for_each(|(part, items)| work(part, items));
@@ -88,6 +91,9 @@ pub(crate) fn on_each<T: Send>(
     items: &mut [T],
     work: impl Fn(usize, &mut T) -> Result<(), ExtractError> + Sync,
 ) -> Result<(), ExtractError> {
+    if !ARE_THERE {
+        return items.iter_mut().enumerate().try_for_each(|(i, item)| work(i, item));
+    }
     let threads = items.len();
     let left = Mutex::new(items.iter_mut().enumerate());
     run(on, threads, &|| {

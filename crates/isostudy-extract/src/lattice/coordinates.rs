@@ -107,8 +107,8 @@ impl Coordinates {
     fn way(&self, layout: &Layout, [x, y, z]: [usize; 3], offset: Offset) -> Vec3 {
         let kind = layout.kind(z);
         let [along, rows, layers] = layout.hop(kind, offset);
-        let [to_x, to_y, to_z] =
-            [(x, along), (y, rows), (z, layers)].map(|(from, step)| from.strict_add_signed(step));
+        let [to_x, to_y, to_z] = [(x, along), (y, rows), (z, layers)]
+            .map(|(from, step)| from.checked_add_signed(step).expect("a point of the lattice"));
         let there = layout.kind(to_z);
         Vec3::new(
             self.x(there)[to_x] - self.x(kind)[x],

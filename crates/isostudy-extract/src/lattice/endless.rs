@@ -104,6 +104,11 @@ impl Grid {
         Self { spacing: self.spacing * 0.5f64.powi(level as i32), ..self }
     }
 
+    /// The same cubes, with a corner at 0.
+    pub(crate) fn from_origin(self) -> Self {
+        Self { origin: [0.0; 3], ..self }
+    }
+
     /// Corner `[0, 0, 0]`.
     pub fn origin(&self) -> [f64; 3] {
         self.origin

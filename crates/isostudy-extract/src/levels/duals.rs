@@ -11,11 +11,11 @@
 use std::collections::{HashMap, TryReserveError};
 
 use glam::Vec3;
-use isostudy_field::StudyField;
 
 use super::error::LevelError;
 use super::layer::point;
 use super::neighbours::Neighbours;
+use super::windows::Values;
 use crate::chunks::{Chunk, Normals};
 use crate::duals::{ROUND, is_other_better};
 use crate::lattice::endless::Grid;
@@ -31,7 +31,8 @@ const OF_SIDES: usize = 1;
 
 /// The chunk that seams are made of.
 pub(super) struct Seams<'a> {
-    pub(super) field: &'a dyn StudyField,
+    /// Of the finer level, the own one and the coarser one.
+    pub(super) values: [Values<'a>; 3],
     pub(super) isovalue: f32,
     pub(super) normals: Normals,
     /// Whether diagonals look at the field.
@@ -176,11 +177,11 @@ impl Seams<'_> {
             if edges.on[i] { start..start + 1 } else { start + 1..end }
         });
         let level = self.is_sharp.then(|| Level {
-            field: self.field,
+            field: self.values_of(finest).field(),
             isovalue: self.isovalue,
             spacing: grid.spacing() as f32,
         });
-        let is_inside = |corner: [i32; 3]| self.is_inside(grid, corner);
+        let is_inside = |corner: [i32; 3]| self.values_of(finest).at(grid, corner) > self.isovalue;
         for second in ranges[1].clone() {
             for first in ranges[0].clone() {
                 let mut from = [0; 3];
@@ -232,8 +233,8 @@ impl Seams<'_> {
         Ok(())
     }
 
-    fn is_inside(&self, grid: &Grid, corner: [i32; 3]) -> bool {
-        self.field.sample(Vec3::from(point(grid, corner))) > self.isovalue
+    fn values_of(&self, step: i32) -> Values<'_> {
+        self.values[(step + 1) as usize]
     }
 
     fn grid(&self, step: i32) -> Result<&Grid, LevelError> {
@@ -314,7 +315,9 @@ impl Seams<'_> {
         };
         let low = cell.map(|i| i.saturating_mul(2));
         let corner = |offset: [i32; 3]| [0, 1, 2].map(|axis| low[axis] + offset[axis]);
-        let value = |offset| self.field.sample(Vec3::from(point(grid, corner(offset))));
+        // The next finer level.
+        let values = self.values_of(step - 1);
+        let value = |offset| values.at(grid, corner(offset));
         let (mut sum, mut count) = ([0.0; 3], 0.0);
         for offset in (0..27).map(|i| [i % 3, i / 3 % 3, i / 9]) {
             for axis in (0..3).filter(|&axis| offset[axis] < 2) {
@@ -336,7 +339,8 @@ impl Seams<'_> {
         if self.normals == Normals::None {
             return Ok((position, None));
         }
-        let level = Level { field: self.field, isovalue: self.isovalue, spacing: grid.spacing() as f32 };
+        let spacing = grid.spacing() as f32;
+        let level = Level { field: values.field(), isovalue: self.isovalue, spacing };
         let normal = level.normal(Vec3::from(position)).unwrap_or(Vec3::Z);
         Ok((position, Some(normal.to_array())))
     }

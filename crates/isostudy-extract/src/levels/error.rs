@@ -36,8 +36,33 @@ pub enum LevelError {
         /// As given.
         cells: CellBox,
     },
-    /// Samples in place of a field.
+    /// Samples of one level in place of a field.
     NeedsField,
+    /// Samples that are not as many as their window has corners.
+    Samples {
+        /// The window's level.
+        level: u32,
+        /// How many there are.
+        given: u64,
+        /// How many corners there are.
+        wanted: u64,
+    },
+    /// Samples that are in no window of the level, nor of a finer one.
+    Missing {
+        /// The level.
+        level: u32,
+        /// The box of cells that a window must have.
+        cells: CellBox,
+    },
+    /// Two levels that have different samples in one place.
+    Disagree {
+        /// The finer one, and the coarser one.
+        levels: [u32; 2],
+        /// The corner, of the coarser grid.
+        corner: [i32; 3],
+        /// The sample of each.
+        samples: [f32; 2],
+    },
 }
 
 in_words! {
@@ -54,7 +79,16 @@ in_words! {
         Self::Finest => "level 0 is the finest: it has no finer neighbours";
         Self::Odd { cells } =>
             "cells {:?} to {:?} have a coarser neighbour: the numbers must be even", cells.start, cells.end;
-        Self::NeedsField => "seams need samples of two levels: give a field";
+        Self::NeedsField =>
+            "seams need samples of two levels: give a field, or windows of each level to extract_samples_into";
+        Self::Samples { level, given, wanted } =>
+            "{given} samples for a window of level {level} with {wanted} corners";
+        Self::Missing { level, cells } =>
+            "samples of level {level} are missing: of the cells {:?} to {:?}, or of a finer level there",
+            cells.start, cells.end;
+        Self::Disagree { levels, corner, samples } =>
+            "corner {corner:?} of level {} has the sample {:?}, and {:?} in level {}: they must be one",
+            levels[1], samples[1], samples[0], levels[0];
     }
     from { ChunkError => Self::Chunk }
 }

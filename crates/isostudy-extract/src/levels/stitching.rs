@@ -11,11 +11,11 @@ use std::collections::{HashMap, TryReserveError};
 
 use glam::{DVec3, Vec3};
 use isostudy_cells::{Loops, Step};
-use isostudy_field::StudyField;
 
 use super::divided::{self, Divided, Division, Divisions};
 use super::filling::{Corner, Filling, On};
 use super::layer::point;
+use super::windows::Values;
 use crate::chunks::{Chunk, Normals};
 use crate::cubes::{Faces, joins};
 use crate::lattice::Arrangement;
@@ -23,14 +23,13 @@ use crate::lattice::endless::Grid;
 use crate::memory::push;
 use crate::placement::spot::linear_ratio;
 use crate::sampling::level::Level;
-use crate::surface::trace::VertexKey;
+use crate::surface::trace::{IN_CELL, VertexKey};
 
 const NONE: u32 = u32::MAX;
 /// More edges than a divided cell has.
 const MOST_EDGES: usize = 48;
 /// Numbers of vertices in a cell come after those of the edges at its lowest corner, and before those in sides.
-const INNER: usize = 3;
-const IN_SIDES: usize = 32;
+const INNER: usize = IN_CELL;
 /// The point in the middle of a cell.
 const MIDDLE: u8 = 13;
 
@@ -50,7 +49,8 @@ struct Crossing {
 /// What seams are made of the field with.
 pub(super) struct Decision<'a> {
     pub(super) faces: Faces,
-    pub(super) field: &'a dyn StudyField,
+    /// Those of the fine grid.
+    pub(super) values: Values<'a>,
     pub(super) isovalue: f32,
     pub(super) normals: Normals,
     /// The fine one.
@@ -149,6 +149,20 @@ impl Stitching {
         Ok(())
     }
 
+    /// Makes what is to be known of cells at one to three finer sides, and at one finer edge.
+    pub(super) fn make_kinds(&mut self) {
+        // By axis: no side, the lower or the upper one.
+        for sides in (1..27_u32).map(|of| [of % 3, of / 3 % 3, of / 9]) {
+            let set = (0..3)
+                .filter(|&axis| sides[axis] > 0)
+                .fold(0, |set, axis| set | 1_u8 << (2 * axis as u32 + sides[axis] - 1));
+            self.kind((set, 0));
+        }
+        for edge in 0..12 {
+            self.kind((0, 1 << edge));
+        }
+    }
+
     fn kind(&mut self, division: Division) -> &Divided {
         self.kinds.entry(division).or_insert_with(|| Divided::new(division))
     }
@@ -217,8 +231,8 @@ impl Here<'_> {
     }
 
     fn value(&self, c: u8) -> f32 {
-        let Decision { field, grid, .. } = *self.decision;
-        field.sample(Vec3::from(point(grid, self.corner(c))))
+        let Decision { values, grid, .. } = *self.decision;
+        values.at(grid, self.corner(c))
     }
 
     fn is_inside(&self, c: u8) -> bool {
@@ -293,9 +307,8 @@ impl Here<'_> {
         let [low, high] = [middle, to].map(|c| self.corner(c));
         let along = (0..3).find(|&axis| low[axis] & 1 != 0).unwrap_or(0);
         let across = (0..3).find(|&axis| low[axis] != high[axis]).unwrap_or(0);
-        let way = 2 * usize::from(across != (along + 1) % 3) + usize::from(high[across] > low[across]);
         let edge = low.map(|i| i64::from(i >> 1));
-        let key = VertexKey::new(Arrangement::SimpleCubic, edge, IN_SIDES + 4 * along + way);
+        let key = VertexKey::in_side(edge, along, across, high[across] > low[across]);
         let key = key.at_level(chunk.level);
         if let Some(&number) = added.get(&key) {
             return Ok(number);
@@ -455,7 +468,8 @@ impl Here<'_> {
 
 impl Decision<'_> {
     fn level(&self) -> Level<'_> {
-        Level { field: self.field, isovalue: self.isovalue, spacing: self.grid.spacing() as f32 }
+        let spacing = self.grid.spacing() as f32;
+        Level { field: self.values.field(), isovalue: self.isovalue, spacing }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Blocks as a method.
 
 use super::{Family, Method, Preset, Promises};
+use crate::builders::builders;
 use crate::duals::{Blocks, Nets};
 use crate::extractor::Way;
 
@@ -21,7 +22,8 @@ const fn named(id: &'static str, label: &'static str, merged: bool, source: &'st
 /// mesh ends half a cell before it. Where blocks meet along an edge alone, that edge has four squares.
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Blocky {
@@ -29,6 +31,26 @@ pub struct Blocky {
     /// rectangle may lie within the side of another: the mesh covers the same surface, and is not closed by its edges. There are no
     /// chunks, since rectangles go on.
     pub merged: bool,
+}
+
+builders! {
+    Blocky {
+        with_merged: merged: bool,
+    }
+}
+
+impl Blocky {
+    /// As [`Default`].
+    pub const fn new() -> Self {
+        Self { merged: false }
+    }
+}
+
+impl Default for Blocky {
+    /// As [`new`](Self::new).
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Family for Blocky {
@@ -45,6 +67,11 @@ impl Family for Blocky {
             chunks: !self.merged,
             samples_suffice: true,
         }
+    }
+
+    /// As of surface nets.
+    fn halo_without_normals(&self) -> Option<u32> {
+        (!self.merged).then_some(1)
     }
 
     /// As of surface nets.

@@ -1,6 +1,7 @@
 //! Continuation as a method.
 
 use super::{Family, Method, MethodError, Preset, Promises};
+use crate::builders::builders;
 use crate::cubes::{Continued, ContinuedCells, Seeds};
 use crate::extractor::Way;
 
@@ -24,6 +25,7 @@ const fn named(id: &'static str, label: &'static str, cells: ContinuedCells) -> 
 /// missing, and nothing says so. Faces are decided by signs, inside corners apart, so that neighbours agree.
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
+#[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
@@ -39,9 +41,25 @@ pub struct Continuation {
     pub search: u32,
 }
 
-impl Default for Continuation {
-    fn default() -> Self {
+builders! {
+    Continuation {
+        with_cells: cells: ContinuedCells,
+        with_seeds: seeds: Seeds,
+        with_search: search: u32,
+    }
+}
+
+impl Continuation {
+    /// As [`Default`].
+    pub const fn new() -> Self {
         Self { cells: ContinuedCells::Cubes, seeds: Seeds::FOUND, search: 8 }
+    }
+}
+
+impl Default for Continuation {
+    /// As [`new`](Self::new).
+    fn default() -> Self {
+        Self::new()
     }
 }
 

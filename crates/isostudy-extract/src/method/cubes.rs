@@ -1,6 +1,7 @@
 //! Marching cubes as a method.
 
 use super::{Family, Method, Preset, Promises};
+use crate::builders::builders;
 use crate::cubes::{Diagonals, Faces, Rule};
 use crate::extractor::Way;
 use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
@@ -40,7 +41,8 @@ const fn named(
 /// what others made of them.
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Cubes {
@@ -54,6 +56,30 @@ pub struct Cubes {
     pub refine_crossings: bool,
     /// How far crossings are kept from sample points, in lengths of a lattice edge: see [`ExtractSettings::edge_clamp`].
     pub edge_clamp: f32,
+}
+
+builders! {
+    Cubes {
+        with_faces: faces: Faces,
+        with_diagonals: diagonals: Diagonals,
+        with_placement: placement: Placement,
+        with_refine_crossings: refine_crossings: bool,
+        with_edge_clamp: edge_clamp: f32,
+    }
+}
+
+impl Cubes {
+    /// As [`Default`].
+    pub const fn new() -> Self {
+        Self { faces: Faces::SeparateInside, diagonals: Diagonals::Fan, placement: Placement::MeanOfCrossings, refine_crossings: false, edge_clamp: 0.0 }
+    }
+}
+
+impl Default for Cubes {
+    /// As [`new`](Self::new).
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Cubes {
@@ -93,6 +119,10 @@ impl Family for Cubes {
         Some(self.table())
     }
 
+    fn has_vertices_on_edges(&self) -> bool {
+        true
+    }
+
     /// One that is moved looks at its triangles, and one that is relaxed at its neighbours first.
     fn halo(&self) -> Option<u32> {
         let more = match self.placement {
@@ -102,6 +132,14 @@ impl Family for Cubes {
             Placement::CurvatureWeighted => return None,
         };
         Some(self.unmoved_halo()? + more)
+    }
+
+    /// No vertex depends on samples beyond its own cells.
+    fn halo_without_normals(&self) -> Option<u32> {
+        match self.placement {
+            Placement::MeanOfCrossings => Some(0),
+            _ => self.halo(),
+        }
     }
 
     /// A vertex of a cell is one of its neighbours' too, and their other vertices give it its normal; no vertex depends on

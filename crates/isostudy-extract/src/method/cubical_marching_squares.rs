@@ -1,6 +1,7 @@
 //! Cubical marching squares as a method.
 
 use super::{Family, Method, MethodError, Preset, Promises};
+use crate::builders::builders;
 use crate::cubes::{Creases, Diagonals, Faces, Rule};
 use crate::extractor::Way;
 
@@ -23,6 +24,7 @@ const DEFAULT: f32 = 20.0;
 /// sheets of surface cross a cube, or a face, creases are cut off as by marching cubes.
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
+#[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
@@ -31,9 +33,23 @@ pub struct CubicalMarchingSquares {
     pub crease_deg: f32,
 }
 
-impl Default for CubicalMarchingSquares {
-    fn default() -> Self {
+builders! {
+    CubicalMarchingSquares {
+        with_crease_deg: crease_deg: f32,
+    }
+}
+
+impl CubicalMarchingSquares {
+    /// As [`Default`].
+    pub const fn new() -> Self {
         Self { crease_deg: DEFAULT }
+    }
+}
+
+impl Default for CubicalMarchingSquares {
+    /// As [`new`](Self::new).
+    fn default() -> Self {
+        Self::new()
     }
 }
 

@@ -1,6 +1,7 @@
 //! Dual contouring as a method.
 
 use super::{Family, Method, MethodError, Preset, Promises};
+use crate::builders::builders;
 use crate::duals::{Nets, Sharp};
 use crate::extractor::Way;
 
@@ -32,6 +33,7 @@ const fn named(
 /// the crossings. Triangles may pass through each other.
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
+#[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
@@ -52,9 +54,26 @@ pub struct DualContouring {
     pub tolerance: f32,
 }
 
-impl Default for DualContouring {
-    fn default() -> Self {
+builders! {
+    DualContouring {
+        with_patches: patches: bool,
+        with_truncation: truncation: f32,
+        with_in_cell: in_cell: bool,
+        with_tolerance: tolerance: f32,
+    }
+}
+
+impl DualContouring {
+    /// As [`Default`].
+    pub const fn new() -> Self {
         Self { patches: false, truncation: 1e-3, in_cell: false, tolerance: 0.0 }
+    }
+}
+
+impl Default for DualContouring {
+    /// As [`new`](Self::new).
+    fn default() -> Self {
+        Self::new()
     }
 }
 

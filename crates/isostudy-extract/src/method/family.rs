@@ -44,6 +44,10 @@ pub(crate) trait Family {
     fn tables(&self) -> Vec<isostudy_cells::Table> {
         self.rule().and_then(table).into_iter().collect()
     }
+    /// Whether vertices are keyed by the lattice edges whose crossings they are.
+    fn has_vertices_on_edges(&self) -> bool {
+        false
+    }
     /// How many times the layers of marching cubes are in sight.
     fn layers(&self) -> u64 {
         1
@@ -52,6 +56,10 @@ pub(crate) trait Family {
     /// are no chunks.
     fn halo(&self) -> Option<u32> {
         self.unmoved_halo()
+    }
+    /// The same where a chunk has no normals, which look at triangles beyond its own.
+    fn halo_without_normals(&self) -> Option<u32> {
+        self.halo()
     }
     /// The same before vertices are moved or edges collapsed; `None` only where there are no chunks.
     fn unmoved_halo(&self) -> Option<u32> {

@@ -1,6 +1,7 @@
 //! Macet as a method: our reading of it.
 
 use super::{Family, Method, MethodError, Preset, Promises};
+use crate::builders::builders;
 use crate::cubes::{Diagonals, EdgeMoves, Faces, Rule};
 use crate::extractor::Way;
 
@@ -31,6 +32,7 @@ pub(super) const PRESETS: &[Preset] = &[
 /// and so on; at the end it is the surface's nearest point. No step turns a triangle over.
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
+#[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
@@ -47,9 +49,19 @@ pub struct Macet {
     pub share: f32,
 }
 
-impl Default for Macet {
+builders! {
+    Macet {
+        with_faces: faces: Faces,
+        with_diagonals: diagonals: Diagonals,
+        with_pull: pull: f32,
+        with_steps: steps: u32,
+        with_share: share: f32,
+    }
+}
+
+impl Macet {
     /// The table of edge groups, and eight steps, as in Unified Macet.
-    fn default() -> Self {
+    pub const fn new() -> Self {
         Self {
             faces: Faces::SeparateInside,
             diagonals: Diagonals::EdgeGroups,
@@ -57,6 +69,13 @@ impl Default for Macet {
             steps: 4,
             share: 1.0,
         }
+    }
+}
+
+impl Default for Macet {
+    /// As [`new`](Self::new).
+    fn default() -> Self {
+        Self::new()
     }
 }
 

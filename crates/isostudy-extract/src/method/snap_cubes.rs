@@ -1,6 +1,7 @@
 //! SnapMC as a method.
 
 use super::{Family, Method, MethodError, Preset, Promises};
+use crate::builders::builders;
 use crate::cubes::Flat;
 use crate::extractor::Way;
 
@@ -26,6 +27,7 @@ pub(super) const PRESETS: &[Preset] = &[
 /// they meet along edges and at points. Pieces thinner than that can be lost. Edges are at least `gamma` times the root of two long.
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
+#[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
@@ -36,10 +38,24 @@ pub struct SnapCubes {
     pub flat: Flat,
 }
 
-impl Default for SnapCubes {
+builders! {
+    SnapCubes {
+        with_gamma: gamma: f32,
+        with_flat: flat: Flat,
+    }
+}
+
+impl SnapCubes {
     /// As published.
-    fn default() -> Self {
+    pub const fn new() -> Self {
         Self { gamma: 0.3, flat: Flat::Both }
+    }
+}
+
+impl Default for SnapCubes {
+    /// As [`new`](Self::new).
+    fn default() -> Self {
+        Self::new()
     }
 }
 

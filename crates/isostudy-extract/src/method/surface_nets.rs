@@ -1,6 +1,7 @@
 //! Surface nets as a method.
 
 use super::{Family, Method, MethodError, Preset, Promises};
+use crate::builders::builders;
 use crate::duals::{MOST_SMOOTHING, Nets};
 use crate::extractor::Way;
 use crate::settings::{Clustering, ExtractSettings, Topology};
@@ -25,7 +26,8 @@ const fn named(id: &'static str, label: &'static str, patches: bool, source: &'s
 /// Where the surface leaves the box the mesh ends half a cell before it, since a vertex lies in a cell.
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SurfaceNets {
@@ -38,6 +40,28 @@ pub struct SurfaceNets {
     pub smoothing: u32,
     /// How far crossings are kept from sample points, in lengths of a lattice edge: see [`ExtractSettings::edge_clamp`].
     pub edge_clamp: f32,
+}
+
+builders! {
+    SurfaceNets {
+        with_patches: patches: bool,
+        with_smoothing: smoothing: u32,
+        with_edge_clamp: edge_clamp: f32,
+    }
+}
+
+impl SurfaceNets {
+    /// As [`Default`].
+    pub const fn new() -> Self {
+        Self { patches: false, smoothing: 0, edge_clamp: 0.0 }
+    }
+}
+
+impl Default for SurfaceNets {
+    /// As [`new`](Self::new).
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Family for SurfaceNets {
@@ -68,6 +92,11 @@ impl Family for SurfaceNets {
     fn check_own(&self) -> Result<(), MethodError> {
         let allowed = "must be from 0 to 64, steps";
         MethodError::unless(self.smoothing <= MOST_SMOOTHING, "smoothing", self.smoothing, allowed)
+    }
+
+    /// A triangle has vertices of the next lower cells. With patches, how such a cell is cut may be for the next one to say.
+    fn halo_without_normals(&self) -> Option<u32> {
+        Some(self.smoothing + if self.patches { 2 } else { 1 })
     }
 
     /// A triangle has vertices of the next lower cells, whose triangles give them normals; how such a cell is cut may be for the

@@ -1,6 +1,7 @@
 //! Marching tetrahedra as a method.
 
 use super::{Family, Method, Preset, Promises};
+use crate::builders::builders;
 use crate::extractor::Way;
 use crate::lattice::Arrangement::{self, BodyCentred, FaceCentred, FiveTetrahedra, SimpleCubic};
 use crate::settings::Clustering::{self, EdgeCollapse, Integrated, IntegratedCollapse, None as Unclustered};
@@ -77,6 +78,7 @@ const fn published(
 /// With the feature `serde` the keys are those of the fields, and `arrangement` must be given. `positions` is `"indexed"`
 /// or `"accumulated"`; to the latter belongs a number `accumulation_chunks`, 1 if it is left out, without effect beside the
 /// former.
+#[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "keys::Keys", into = "keys::Keys"))]
@@ -95,6 +97,18 @@ pub struct Tetrahedra {
     pub refine_crossings: bool,
     /// How far crossings are kept from sample points, in lengths of a lattice edge: see [`ExtractSettings::edge_clamp`].
     pub edge_clamp: f32,
+}
+
+builders! {
+    Tetrahedra {
+        with_arrangement: arrangement: Arrangement,
+        with_clustering: clustering: Clustering,
+        with_topology: topology: Topology,
+        with_positions: positions: Positions,
+        with_placement: placement: Placement,
+        with_refine_crossings: refine_crossings: bool,
+        with_edge_clamp: edge_clamp: f32,
+    }
 }
 
 impl Tetrahedra {
@@ -116,6 +130,13 @@ impl Tetrahedra {
         let Self { arrangement: _, clustering, topology, positions, placement, refine_crossings, edge_clamp } =
             *self;
         ExtractSettings { isovalue, clustering, topology, positions, placement, refine_crossings, edge_clamp }
+    }
+}
+
+impl Default for Tetrahedra {
+    /// The body-centred arrangement, [`new`](Self::new).
+    fn default() -> Self {
+        Self::new(BodyCentred)
     }
 }
 

@@ -1,16 +1,17 @@
 //! A volume's own cells: the surface between its samples, in the space its steps are in.
 
 use glam::Vec3;
-use isostudy_field::StoredSamples;
+use isostudy_field::{Beyond, StoredSamples, VolumeField, VolumeFieldError};
 use isostudy_mesh::Bounds;
 
 use crate::active::{ActiveError, Bricks, GridSamples};
+use crate::execution::control::Control;
 use crate::extraction::ExtractError;
 use crate::extraction::Extraction;
 use crate::extractor::Extractor;
 use crate::lattice::BoxGrid;
+use crate::memory::copied;
 use crate::method::{Method, MethodError};
-use crate::settings::Execution;
 use crate::source::Source;
 use crate::surface::normals::vertex_normals;
 use crate::surface::space::Space;
@@ -48,6 +49,8 @@ pub enum VolumeCellsError {
     },
     /// A method whose sample points are not the corners of cubes.
     Method,
+    /// The samples make no field, for a method that calls one.
+    Field(VolumeFieldError),
     /// The extraction fails.
     Extract(MethodError),
 }
@@ -59,9 +62,10 @@ in_words! {
             "the steps {steps:?} from sample to sample, from {origin:?}, span no space";
         Self::Method =>
             "a volume's own cells are for methods of cubes: other methods have sample points between";
+        Self::Field(error) => "{error}";
         Self::Extract(error) => "{error}";
     }
-    from { MethodError => Self::Extract }
+    from { MethodError => Self::Extract, VolumeFieldError => Self::Field }
 }
 
 impl<'a> VolumeCells<'a> {
@@ -79,14 +83,36 @@ impl<'a> VolumeCells<'a> {
     ///
     /// # Errors
     /// [`VolumeCellsError`].
-    pub fn extract(
+    pub fn extract<'c>(
         &self,
         method: &Method,
         extractor: &mut Extractor,
         isovalue: f32,
-        execution: &Execution,
+        control: impl Into<Control<'c>>,
     ) -> Result<Extraction, VolumeCellsError> {
-        self.extract_from(Source::Samples(self.values), method, extractor, isovalue, execution)
+        self.extract_from(Source::Samples(self.values), method, extractor, isovalue, control.into())
+    }
+
+    /// Extracts by any method. Where the samples are all that it asks for, as [`extract`](Self::extract), to the byte. Any other method is
+    /// given the samples' trilinear interpolant in steps of the grid, of which it takes what it asks for. Beyond the outermost
+    /// samples that field goes on.
+    ///
+    /// # Errors
+    /// [`VolumeCellsError`].
+    pub fn extract_interpolated<'c>(
+        &self,
+        method: &Method,
+        extractor: &mut Extractor,
+        isovalue: f32,
+        control: impl Into<Control<'c>>,
+    ) -> Result<Extraction, VolumeCellsError> {
+        if method.is_of_cubes() && method.promises().samples_suffice {
+            return self.extract(method, extractor, isovalue, control.into());
+        }
+        let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let values = copied(self.values).map_err(|_| MethodError::from(ExtractError::NoMemoryForMesh))?;
+        let field = VolumeField::try_new(self.counts, values, [0.0; 3], unit, Beyond::Continued)?;
+        self.extract_in_steps(Source::Study(&field), method, extractor, isovalue, control.into())
     }
 
     /// The ranges of bricks of the samples, for [`extract_by_bricks`](Self::extract_by_bricks).
@@ -102,15 +128,15 @@ impl<'a> VolumeCells<'a> {
     ///
     /// # Errors
     /// [`VolumeCellsError`], [`ExtractError::BrickCounts`] among them if the bricks are those of a volume of another size.
-    pub fn extract_by_bricks(
+    pub fn extract_by_bricks<'c>(
         &self,
         bricks: &Bricks,
         method: &Method,
         extractor: &mut Extractor,
         isovalue: f32,
-        execution: &Execution,
+        control: impl Into<Control<'c>>,
     ) -> Result<Extraction, VolumeCellsError> {
-        self.extract_from(Source::Bricks(bricks), method, extractor, isovalue, execution)
+        self.extract_from(Source::Bricks(bricks), method, extractor, isovalue, control.into())
     }
 
     /// Extracts the same mesh, to the byte, of samples that are not in memory: a few layers of them are, while the surface is made. `values`
@@ -118,15 +144,15 @@ impl<'a> VolumeCells<'a> {
     ///
     /// # Errors
     /// [`VolumeCellsError`], [`ExtractError::StoredCounts`] and [`ExtractError::Unread`] among them.
-    pub fn extract_stored(
+    pub fn extract_stored<'c>(
         &self,
         samples: &dyn StoredSamples,
         method: &Method,
         extractor: &mut Extractor,
         isovalue: f32,
-        execution: &Execution,
+        control: impl Into<Control<'c>>,
     ) -> Result<Extraction, VolumeCellsError> {
-        self.extract_from(Source::Stored(samples), method, extractor, isovalue, execution)
+        self.extract_from(Source::Stored(samples), method, extractor, isovalue, control.into())
     }
 
     fn extract_from(
@@ -135,18 +161,29 @@ impl<'a> VolumeCells<'a> {
         method: &Method,
         extractor: &mut Extractor,
         isovalue: f32,
-        execution: &Execution,
+        control: Control,
     ) -> Result<Extraction, VolumeCellsError> {
-        let Self { counts, origin, steps, .. } = *self;
         if !method.is_of_cubes() {
             return Err(VolumeCellsError::Method);
         }
+        self.extract_in_steps(source, method, extractor, isovalue, control)
+    }
+
+    fn extract_in_steps(
+        &self,
+        source: Source,
+        method: &Method,
+        extractor: &mut Extractor,
+        isovalue: f32,
+        control: Control,
+    ) -> Result<Extraction, VolumeCellsError> {
+        let Self { counts, origin, steps, .. } = *self;
         if counts.iter().any(|&n| n < 2) {
             return Err(VolumeCellsError::Flat { counts });
         }
         let space = Space::try_new(origin, steps).ok_or(VolumeCellsError::Steps { steps, origin })?;
         let grid = self.grid();
-        let mut extraction = method.extract(extractor, source, &grid, isovalue, execution)?;
+        let mut extraction = method.extract(extractor, source, &grid, isovalue, control)?;
         let mesh = &mut extraction.mesh;
         space.place(mesh);
         let normals = vertex_normals(&mesh.positions, &mesh.triangles);

@@ -9,7 +9,7 @@ use super::finish::finish;
 use super::piece::{Piece, SlabTimes};
 use crate::clock::Moment;
 use crate::execution::control::Threads;
-use crate::execution::threads::on_each;
+use crate::execution::threads::{ARE_THERE, on_each};
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes};
 use crate::memory::{refill, with_room};
 use crate::source::Request;
@@ -53,7 +53,10 @@ pub(super) fn assemble(
 
     let making_normals = Moment::now();
     let seams = if collapsing.is_some() { None } else { Some(&*seams) };
-    make_normals(mesh, seams, control.threads, threads)?;
+    match request.with_normals {
+        true => make_normals(mesh, seams, control.threads, threads)?,
+        false => mesh.normals.clear(),
+    }
     times.normals = making_normals.elapsed();
 
     extraction.times = times;
@@ -88,7 +91,7 @@ struct Seam {
 fn join(pieces: &mut [Piece], most_vertices: u32, on: Threads) -> Result<Vec<Seam>, ExtractError> {
     let (first, rest) = pieces.split_first_mut().expect("there is a slab");
     let mut seams = Vec::new();
-    if rest.is_empty() {
+    if !ARE_THERE || rest.is_empty() {
         return Ok(seams);
     }
     let total: usize = first.positions.len() + rest.iter().map(|piece| piece.positions.len()).sum::<usize>();
@@ -151,7 +154,7 @@ fn make_normals(
     let TriangleMesh { positions, normals, triangles } = mesh;
     normals.clear();
     refill(normals, positions.len(), Vec3::ZERO).map_err(|_| ExtractError::NoMemoryForMesh)?;
-    let seams = seams.filter(|seams| threads > 1 && seams.len() > 1);
+    let seams = seams.filter(|seams| ARE_THERE && threads > 1 && seams.len() > 1);
     let Some(seams) = seams else {
         crate::surface::normals::accumulate(positions, triangles, normals);
         return Ok(());

@@ -6,6 +6,7 @@ use std::time::Duration;
 use glam::Vec3;
 
 use crate::clock::Moment;
+#[cfg(feature = "tetrahedra")]
 use crate::clustering::collapse::collapse;
 use crate::execution::control::Threads;
 use crate::extraction::ExtractError;
@@ -31,7 +32,9 @@ pub(crate) fn finish(
     surface: &mut Triangulation,
 ) -> Result<Option<Duration>, ExtractError> {
     let (spacing, bounds) = (lattice.spacing(), lattice.bounds());
-    let level = level.filter(|_| settings.placement.calls_the_field());
+    let moves_here =
+        cfg!(any(feature = "tetrahedra", feature = "cubes")) && settings.placement.calls_the_field();
+    let level = level.filter(|_| moves_here);
     if targets.is_empty() && level.is_none() {
         return Ok(timed_collapse(settings, spacing, positions, surface)?);
     }
@@ -59,6 +62,14 @@ fn timed_collapse(
     positions: &mut Vec<Vec3>,
     surface: &mut Triangulation,
 ) -> Result<Option<Duration>, TryReserveError> {
-    let start = Moment::now();
-    Ok(collapse(settings, spacing, positions, surface)?.then(|| start.elapsed()))
+    #[cfg(feature = "tetrahedra")]
+    {
+        let start = Moment::now();
+        Ok(collapse(settings, spacing, positions, surface)?.then(|| start.elapsed()))
+    }
+    #[cfg(not(feature = "tetrahedra"))]
+    {
+        let _ = (settings, spacing, positions, surface);
+        Ok(None)
+    }
 }

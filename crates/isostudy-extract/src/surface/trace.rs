@@ -22,7 +22,39 @@ const BIAS: i64 = 1 << (PLACE_BITS - 1);
 /// Above the place, two bits for the arrangement; above these, the level.
 const LEVEL_SHIFT: u32 = DIRECTION_BITS + 3 * PLACE_BITS + 2;
 
+/// Numbers below this are the axes of lattice edges that begin at the point, where vertices are crossings; from it on, of vertices in a cell.
+pub(crate) const IN_CELL: usize = 3;
+/// From here on, numbers of vertices that seams of marching cubes put into sides: four for each axis of the edge in whose middle they begin.
+const IN_SIDES: usize = 32;
+
 impl VertexKey {
+    /// Of a vertex in a side of coarse cells, on the line that begins in the middle of an edge of theirs and leads across it, up or down.
+    /// `edge` is where that begins.
+    pub(crate) fn in_side(edge: [i64; 3], along: usize, across: usize, is_up: bool) -> Self {
+        let way = 2 * usize::from(across != (along + 1) % 3) + usize::from(is_up);
+        Self::new(Arrangement::SimpleCubic, edge, IN_SIDES + 4 * along + way)
+    }
+
+    /// The lowest and the highest of the corners that the vertex lies between, where vertices of cubes are crossings.
+    pub(crate) fn ends_of_crossing(self) -> [[i32; 3]; 2] {
+        let low = self.cell();
+        let (mut from, mut to) = (low, low);
+        match self.direction() {
+            axis @ 0..IN_CELL => to[axis] = to[axis].saturating_add(1),
+            number @ IN_SIDES.. => {
+                let (along, way) = ((number - IN_SIDES) / 4, (number - IN_SIDES) % 4);
+                let across = (along + 1 + way / 2) % 3;
+                to[along] = to[along].saturating_add(1);
+                match way % 2 {
+                    0 => from[across] = from[across].saturating_sub(1),
+                    _ => to[across] = to[across].saturating_add(1),
+                }
+            }
+            _ => to = to.map(|i| i.saturating_add(1)),
+        }
+        [from, to]
+    }
+
     /// Of a stored point of the whole lattice.
     pub(crate) fn new(arrangement: Arrangement, [x, y, z]: [i64; 3], direction: usize) -> Self {
         let place = |key: u128, i: i64| key << PLACE_BITS | (i + BIAS) as u128;
@@ -44,6 +76,19 @@ impl VertexKey {
     pub fn cell(self) -> [i32; 3] {
         let arrangement = Arrangement::ALL[(self.0 >> (DIRECTION_BITS + 3 * PLACE_BITS)) as usize & 3];
         cell_of_stored(arrangement, self.stored()).map(|i| i as i32)
+    }
+
+    /// The same so many cells farther along each axis.
+    pub(crate) fn moved(self, cells: [i64; 3]) -> Self {
+        let arrangement = Arrangement::ALL[(self.0 >> (DIRECTION_BITS + 3 * PLACE_BITS)) as usize & 3];
+        let stored = match arrangement {
+            Arrangement::BodyCentred => [1, 1, 2],
+            Arrangement::SimpleCubic | Arrangement::FiveTetrahedra => [1; 3],
+            Arrangement::FaceCentred => [2; 3],
+        };
+        let from = self.stored();
+        let to = [0, 1, 2].map(|axis| from[axis] + stored[axis] * cells[axis]);
+        Self::new(arrangement, to, self.direction()).at_level(self.level())
     }
 
     /// The direction of the first lattice edge, or beyond them the number of a vertex in the cell.
@@ -130,5 +175,15 @@ mod tests {
         assert_eq!(centred([0, 0, 0]), [-1; 3]);
         assert_eq!(centred([0, 0, 1]), [0; 3]);
         assert_eq!(centred([-3, -3, -7]), [-3, -3, -4]);
+        for arrangement in Arrangement::ALL {
+            let key = VertexKey::new(arrangement, [-3, 4, -5], 9).at_level(2);
+            let moved = key.moved([5, -6, 7]);
+            assert_eq!(
+                moved.cell(),
+                [0, 1, 2].map(|axis| key.cell()[axis] + [5, -6, 7][axis]),
+                "{arrangement}"
+            );
+            assert_eq!((moved.direction(), moved.level(), moved.moved([-5, 6, -7])), (9, 2, key));
+        }
     }
 }

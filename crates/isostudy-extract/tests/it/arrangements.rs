@@ -21,7 +21,7 @@ const CUBE: Bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
 const ONE: Execution = Execution { threads: 1 };
 
 fn settings(clustering: Clustering) -> ExtractSettings {
-    ExtractSettings { clustering, ..ExtractSettings::default() }
+    ExtractSettings::default().with_clustering(clustering)
 }
 
 fn run(field: &dyn StudyField, lattice: &Lattice, clustering: Clustering) -> Extraction {
@@ -164,15 +164,15 @@ fn vertices_stand_on_the_surface_where_the_field_is_called() {
         };
         let plain = settings(Clustering::None);
         let (triangles, interpolated) = median_off(plain);
-        let projected = ExtractSettings { placement: Placement::Projected, ..plain };
-        let refined = ExtractSettings { refine_crossings: true, ..plain };
+        let projected = plain.with_placement(Placement::Projected);
+        let refined = plain.with_refine_crossings(true);
         for better in [projected, refined] {
             let (same, off) = median_off(better);
             assert_eq!(same, triangles, "{arrangement:?}: vertices move, triangles stay");
             assert!(off < 0.1 * interpolated, "{arrangement:?}: {off} of {interpolated}");
         }
         // The weighted mean of one crossing is the crossing.
-        let weighted = ExtractSettings { placement: Placement::CurvatureWeighted, ..plain };
+        let weighted = plain.with_placement(Placement::CurvatureWeighted);
         assert!((median_off(weighted).1 - interpolated).abs() < 1e-5);
     }
 }
@@ -189,7 +189,7 @@ fn ties_follow_the_topology() {
     for arrangement in BY_CUBES {
         let lattice = Lattice::try_new(arrangement, CUBE, 0.5).unwrap();
         let [guarded, published] = [Topology::Guarded, Topology::Published].map(|topology| {
-            let settings = ExtractSettings { topology, ..settings(Clustering::None) };
+            let settings = settings(Clustering::None).with_topology(topology);
             extract(&Levels, &lattice, &settings, &ONE).unwrap().counts
         });
         assert_eq!((guarded.vertices, published.vertices), (guarded.crossings, 2 * guarded.crossings));
@@ -232,7 +232,7 @@ fn what_an_arrangement_does_not_have_is_an_error() {
             );
         }
         let positions = Positions::Accumulated { chunks: 16 };
-        let accumulated = ExtractSettings { positions, ..settings(Clustering::None) };
+        let accumulated = settings(Clustering::None).with_positions(positions);
         let error = extract(&Sphere { radius: 0.8 }, &lattice, &accumulated, &ONE).unwrap_err();
         assert_eq!(error, ExtractError::ArrangementAccumulated { arrangement });
     }

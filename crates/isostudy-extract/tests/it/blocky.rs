@@ -9,8 +9,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::{BTreeMap, BTreeSet};
 
-const SINGLE: Method = Method::Blocky(Blocky { merged: false });
-const MERGED: Method = Method::Blocky(Blocky { merged: true });
+const SINGLE: Method = Method::Blocky(Blocky::new().with_merged(false));
+const MERGED: Method = Method::Blocky(Blocky::new().with_merged(true));
 
 /// A square: its axis, the way it faces, its plane, row and place in the row.
 type Square = (usize, bool, usize, usize, usize);

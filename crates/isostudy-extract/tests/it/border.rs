@@ -25,7 +25,7 @@ impl<F: Fn(f32, f32) -> f32 + Sync> StudyField for Terrain<F> {
 }
 
 fn mesh_of(field: &dyn StudyField, lattice: &Lattice, clustering: Clustering) -> TriangleMesh {
-    let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_clustering(clustering);
     extract(field, lattice, &settings, &ONE).unwrap().mesh
 }
 
@@ -107,7 +107,7 @@ fn the_field_is_never_called_outside_of_the_box_unless_as_published() {
             let beyond = |topology| {
                 let recorder = Recorder(Mutex::default());
                 let settings =
-                    ExtractSettings { topology, clustering: Clustering::None, ..Default::default() };
+                    ExtractSettings::default().with_topology(topology).with_clustering(Clustering::None);
                 extract(&recorder, &lattice, &settings, &ONE).unwrap();
                 let places = recorder.0.into_inner().unwrap();
                 // To each of the six faces there are samples.
@@ -143,7 +143,7 @@ proptest! {
         let bounds = Bounds { min, max: min + Vec3::new(size[0], size[1], 1.2) };
         let lattice = Lattice::try_new(Arrangement::ALL[arrangement], bounds, spacing).unwrap();
         check(&field, &lattice, "hills");
-        let method = Tetrahedra { clustering: Clustering::None, ..Tetrahedra::new(lattice.arrangement()) };
+        let method = Tetrahedra::new(lattice.arrangement()).with_clustering(Clustering::None);
         let mut extractor = ChunkExtractor::in_box(
             &BoxGrid::from(&lattice),
             &Method::Tetrahedra(method),

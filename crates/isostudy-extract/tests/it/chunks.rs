@@ -8,8 +8,8 @@ use glam::Vec3;
 use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
     Aabb, Arrangement, BoxGrid, CellBox, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Clustering,
-    Execution, ExtractError, Method, Placement, Positions, Source, Tetrahedra, Topology, WeldError,
-    weld_chunks,
+    Control, Execution, ExtractError, Grid, Method, Normals, Placement, Positions, ScalarField, Source,
+    SurfaceNets, Tetrahedra, Topology, WeldError, from_fn, presets, weld_chunks,
 };
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};
@@ -23,10 +23,8 @@ fn all_settings(arrangement: Arrangement) -> impl Iterator<Item = ExtractSetting
         [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse, Clustering::IntegratedCollapse];
     clusterings.into_iter().filter(move |&clustering| arrangement.supports(clustering)).flat_map(
         |clustering| {
-            [Topology::Guarded, Topology::Published].map(|topology| ExtractSettings {
-                clustering,
-                topology,
-                ..ExtractSettings::default()
+            [Topology::Guarded, Topology::Published].map(|topology| {
+                ExtractSettings::default().with_clustering(clustering).with_topology(topology)
             })
         },
     )
@@ -36,15 +34,15 @@ fn try_chunks_of(lattice: &Lattice, settings: &ExtractSettings) -> Result<ChunkE
     let ExtractSettings { clustering, topology, positions, placement, refine_crossings, edge_clamp, .. } =
         *settings;
     let arrangement = lattice.arrangement();
-    let method = Method::Tetrahedra(Tetrahedra {
-        arrangement,
-        clustering,
-        topology,
-        positions,
-        placement,
-        refine_crossings,
-        edge_clamp,
-    });
+    let method = Method::Tetrahedra(
+        Tetrahedra::new(arrangement)
+            .with_clustering(clustering)
+            .with_topology(topology)
+            .with_positions(positions)
+            .with_placement(placement)
+            .with_refine_crossings(refine_crossings)
+            .with_edge_clamp(edge_clamp),
+    );
     let settings = ChunkSettings::default().with_isovalue(settings.isovalue);
     ChunkExtractor::in_box(&BoxGrid::from(lattice), &method, &settings)
 }
@@ -172,8 +170,7 @@ fn samples_threads_and_order_do_not_show() {
             Arrangement::BodyCentred => body_centred_samples(&volume),
             _ => storage_samples(&volume),
         };
-        let settings =
-            all_settings(arrangement).next().map(|s| ExtractSettings { isovalue: 0.01, ..s }).unwrap();
+        let settings = all_settings(arrangement).next().map(|s| s.with_isovalue(0.01)).unwrap();
         let mut extractor = chunks_of(&lattice, &settings);
         let boxes: Vec<CellBox> = extractor.grid(5).collect();
         let called = chunks(Source::Study(&volume), &lattice, &settings, &boxes);
@@ -304,12 +301,12 @@ fn what_cannot_be_cut_into_chunks_is_an_error() {
         try_chunks_of(lattice, &settings).expect_err("refused")
     };
     let positions = Positions::Accumulated { chunks: 1 };
-    assert_eq!(refused(ExtractSettings { positions, ..settings }, &lattice), ChunkError::Accumulated);
+    assert_eq!(refused(settings.with_positions(positions), &lattice), ChunkError::Accumulated);
     let placement = Placement::CurvatureWeighted;
-    let error = refused(ExtractSettings { placement, ..settings }, &lattice);
+    let error = refused(settings.with_placement(placement), &lattice);
     assert_eq!(error, ChunkError::Placement { placement, refine_crossings: false });
     let (placement, clustering) = (Placement::Relaxed, Clustering::EdgeCollapse);
-    let error = refused(ExtractSettings { placement, clustering, ..settings }, &lattice);
+    let error = refused(settings.with_placement(placement).with_clustering(clustering), &lattice);
     assert_eq!(error, ChunkError::Placement { placement, refine_crossings: false });
     let five = Lattice::try_new(Arrangement::FiveTetrahedra, bounds, 0.5).unwrap();
     let error = ExtractError::ArrangementClustering {
@@ -365,4 +362,40 @@ fn collapses_look_as_far_as_a_piece_of_surface_goes() {
             assert_ne!(window(&Balls, corner), whole_box(&lattice), "{arrangement:?}");
         }
     }
+}
+
+/// Without normals a chunk looks at fewer samples, and is the same otherwise: at samples that equal the isovalue, too.
+#[test]
+fn chunks_without_normals_are_the_same_otherwise() {
+    let noise = crate::two_levels::noise(5, 8.0, 40.0);
+    let waves = from_fn(|[x, y, z]: [f32; 3]| (0.7 * x).sin() + (0.6 * y + 1.0).sin() + (0.8 * z).cos());
+    let grid = Grid::try_new([0.0; 3], 1.0).unwrap();
+    let smoothed = [false, true]
+        .map(|patches| Method::SurfaceNets(SurfaceNets::default().with_smoothing(2).with_patches(patches)));
+    let methods = presets().iter().map(|preset| preset.method).filter(|method| method.promises().chunks);
+    let (mut compared, mut narrower) = (0, 0);
+    for method in methods.chain(smoothed) {
+        let settings = ChunkSettings::default().with_isovalue(0.1);
+        let Ok(mut with) = ChunkExtractor::try_new(&grid, &method, &settings) else { continue };
+        let without = settings.with_normals(Normals::None);
+        let mut without = ChunkExtractor::try_new(&grid, &method, &without).unwrap();
+        let fields: &[&dyn ScalarField] =
+            if method.promises().samples_suffice { &[&noise, &waves] } else { &[&waves] };
+        for field in fields {
+            for start in [[0, 0, 0], [-7, 3, 2], [5, -9, -4]] {
+                let cells = CellBox { start, end: start.map(|i| i + 7) };
+                let expected = with.extract(*field, cells, Control::default()).unwrap();
+                let found = without.extract(*field, cells, Control::default()).unwrap();
+                assert!(found.normals.is_empty() && expected.normals.len() == expected.positions.len());
+                assert!(found.triangles.len() > 50, "{method:?}");
+                assert_eq!(found.keys, expected.keys, "{method:?} {start:?}");
+                assert_eq!(found.positions, expected.positions, "{method:?} {start:?}");
+                assert_eq!(found.triangles, expected.triangles, "{method:?} {start:?}");
+                assert_eq!(found.triangle_cells, expected.triangle_cells, "{method:?} {start:?}");
+                compared += 1;
+                narrower += usize::from(found.window != expected.window);
+            }
+        }
+    }
+    assert!(compared > 60 && narrower > 20, "{compared} {narrower}");
 }

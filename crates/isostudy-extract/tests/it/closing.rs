@@ -13,7 +13,7 @@ use proptest::prelude::*;
 const CLUSTERINGS: [Clustering; 3] = [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse];
 
 fn mesh_of(field: &dyn StudyField, lattice: &Lattice, clustering: Clustering, isovalue: f32) -> TriangleMesh {
-    let settings = ExtractSettings { clustering, isovalue, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_clustering(clustering).with_isovalue(isovalue);
     extract(field, lattice, &settings, &Execution { threads: 1 }).unwrap().mesh
 }
 

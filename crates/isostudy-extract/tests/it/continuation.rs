@@ -47,7 +47,7 @@ fn extract(continuation: Continuation, field: &dyn StudyField, grid: &BoxGrid) -
 }
 
 fn seeded(cells: ContinuedCells, points: &[[f32; 3]]) -> Continuation {
-    Continuation { cells, seeds: Seeds::try_new(points).unwrap(), search: 8 }
+    Continuation::default().with_cells(cells).with_seeds(Seeds::try_new(points).unwrap()).with_search(8)
 }
 
 /// The generator that the GNU C library's `rand` is after `srand(1)`: additive, of 31 numbers, the first 310 left out.
@@ -304,7 +304,7 @@ fn a_seed_reaches_its_piece_and_no_more() {
 
 #[test]
 fn with_a_seed_in_every_piece_it_is_marching_cubes_to_the_byte() {
-    let all = Continuation { search: 1, ..Continuation::default() };
+    let all = Continuation::default().with_search(1);
     for (seed, counts) in [[7, 6, 5], [2, 2, 2], [9, 8, 7], [30, 3, 4]].into_iter().enumerate() {
         for levels in [1, 2, 9] {
             let noise = Noise::new(counts, 100 + seed as u64, levels);
@@ -336,7 +336,7 @@ fn with_a_seed_in_every_piece_it_is_marching_cubes_to_the_byte() {
 /// A vertex for each crossed edge of the lattice and each crossed diagonal, and a manifold, whatever the samples.
 #[test]
 fn tetrahedra_have_a_vertex_on_every_crossed_edge() {
-    let all = Continuation { cells: ContinuedCells::Tetrahedra, search: 1, ..Continuation::default() };
+    let all = Continuation::default().with_cells(ContinuedCells::Tetrahedra).with_search(1);
     // From the corner that an edge begins at to the other.
     let edges: [[i32; 3]; 7] =
         [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 1, 0], [-1, 0, 1], [0, -1, 1], [-1, -1, 1]];
@@ -370,7 +370,7 @@ const GRID: BoxGrid = BoxGrid { bounds: Bounds { min: Vec3::NEG_ONE, max: Vec3::
 fn triangles_face_outward_and_enclose_the_ball() {
     for cells in [ContinuedCells::Cubes, ContinuedCells::Tetrahedra] {
         let field = Counting::new(ball([0.05, -0.1, 0.02], 0.7));
-        let found = extract(Continuation { cells, ..Continuation::default() }, &field, &GRID);
+        let found = extract(Continuation::default().with_cells(cells), &field, &GRID);
         assert!(topology(&found.mesh).is_closed_manifold());
         let expected = 4.0 / 3.0 * std::f64::consts::PI * 0.7f64.powi(3);
         assert!((found.mesh.volume() / expected - 1.0).abs() < 2e-3, "{cells:?}: {}", found.mesh.volume());
@@ -406,11 +406,10 @@ fn a_second_piece_needs_a_seed_of_its_own() {
 fn a_search_goes_on_until_it_finds_something() {
     for centre in [[0.3, -0.4, 0.1], [0.99, 0.98, -0.97], [-0.61, 0.47, 0.83]] {
         let field = Counting::new(ball(centre, 0.03));
-        let found = extract(Continuation { search: 32, ..Continuation::default() }, &field, &GRID);
+        let found = extract(Continuation::default().with_search(32), &field, &GRID);
         assert!(found.counts.triangles > 0, "{centre:?}");
     }
-    let nothing =
-        extract(Continuation { search: 32, ..Continuation::default() }, &Counting::new(|_| -1.0), &GRID);
+    let nothing = extract(Continuation::default().with_search(32), &Counting::new(|_| -1.0), &GRID);
     assert_eq!((nothing.counts.vertices, nothing.counts.cells_visited), (0, 0));
 }
 
@@ -422,7 +421,7 @@ fn what_cannot_be_is_refused() {
         error.to_string().contains("not all finite") && error.to_string().contains("at most 8"),
         "{error}"
     );
-    let method = Method::Continuation(Continuation { search: 0, ..Continuation::default() });
+    let method = Method::Continuation(Continuation::default().with_search(0));
     let error = method.check(&GRID).unwrap_err();
     assert!(matches!(error, MethodError::Setting { key: "search", .. }));
     assert_eq!(error.to_string(), "search = 0: must be 1 or more, cells");

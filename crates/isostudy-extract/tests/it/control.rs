@@ -26,7 +26,7 @@ fn ball([x, y, z]: [f32; 3]) -> f32 {
 fn method(arrangement: Arrangement) -> Method {
     let clustering =
         if arrangement.supports(Clustering::Integrated) { Clustering::Integrated } else { Clustering::None };
-    Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(arrangement) })
+    Method::Tetrahedra(Tetrahedra::new(arrangement).with_clustering(clustering))
 }
 
 fn chunks() -> (ChunkExtractor, CellBox) {
@@ -82,7 +82,7 @@ fn a_whole_mesh_that_is_cancelled_is_an_error() {
         }
         for (threads, positions) in all {
             let settings =
-                ExtractSettings { positions, clustering: Clustering::None, ..ExtractSettings::default() };
+                ExtractSettings::default().with_positions(positions).with_clustering(Clustering::None);
             let cancel = AtomicBool::new(false);
             let calls = AtomicUsize::new(0);
             let impatient = from_fn(|p| {

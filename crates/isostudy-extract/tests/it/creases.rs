@@ -12,7 +12,7 @@ use isostudy_mesh::{Bounds, TriangleMesh};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-const CMS: Method = Method::CubicalMarchingSquares(CubicalMarchingSquares { crease_deg: 20.0 });
+const CMS: Method = Method::CubicalMarchingSquares(CubicalMarchingSquares::new().with_crease_deg(20.0));
 
 /// The least, or with `most` the largest, of distances to planes, each its normal's and at its distance from the origin.
 struct Planes {
@@ -139,7 +139,7 @@ fn no_triangle_passes_through_another() {
         assert_eq!(found.non_manifold_edges + found.non_manifold_vertices, 0);
         assert!(!is_closed || found.boundary_edges == 0);
         assert_eq!(self_intersections(&mesh), Ok(0));
-        let dual = Method::DualContouring(DualContouring { patches: true, ..DualContouring::default() });
+        let dual = Method::DualContouring(DualContouring::default().with_patches(true));
         of_planes += self_intersections(&mesh_of(dual, field, cells, 1)).unwrap();
     };
     for turn in turns() {
@@ -202,7 +202,8 @@ fn any_number_of_threads_gives_the_same_mesh() {
 #[test]
 fn what_is_no_angle_is_refused() {
     for crease_deg in [0.0, -1.0, 180.5, f32::NAN] {
-        let method = Method::CubicalMarchingSquares(CubicalMarchingSquares { crease_deg });
+        let method =
+            Method::CubicalMarchingSquares(CubicalMarchingSquares::default().with_crease_deg(crease_deg));
         let error = method.check(&grid(8)).unwrap_err();
         assert!(matches!(error, MethodError::Setting { key: "crease_deg", .. }), "{error}");
     }

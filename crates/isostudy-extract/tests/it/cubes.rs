@@ -19,7 +19,7 @@ const FACES: [Faces; 4] = [Faces::SeparateInside, Faces::JoinInside, Faces::Deci
 const DIAGONALS: [Diagonals; 3] = [Diagonals::Fan, Diagonals::EdgeGroups, Diagonals::Quality];
 
 fn cubes(faces: Faces, diagonals: Diagonals) -> Method {
-    Method::Cubes(Cubes { faces, diagonals, ..Cubes::default() })
+    Method::Cubes(Cubes::default().with_faces(faces).with_diagonals(diagonals))
 }
 
 /// All samples of a field at whole coordinates, x fastest.
@@ -287,7 +287,7 @@ fn moved_vertices_weld_to_the_whole() {
         let volume = Volume::random(Arrangement::SimpleCubic, 9, family, 3);
         let grid = BoxGrid::from(&volume.lattice());
         for placement in [Placement::Projected, Placement::Relaxed] {
-            let method = Method::Cubes(Cubes { faces, placement, ..Cubes::default() });
+            let method = Method::Cubes(Cubes::default().with_faces(faces).with_placement(placement));
             assert!(method.promises().chunks);
             let source = Source::Study(&volume);
             let whole = method.extract(&mut Extractor::new(), source, &grid, 0.0, &ONE).unwrap().mesh;
@@ -396,7 +396,10 @@ fn placements_change_positions_only() {
     let bounds = Bounds { min: Vec3::splat(-1.13), max: Vec3::splat(1.13) };
     let grid = BoxGrid { bounds, spacing: 0.2 };
     let run = |placement, refine_crossings, threads| {
-        let method = Cubes { placement, refine_crossings, faces: Faces::Trilinear, ..Cubes::default() };
+        let method = Cubes::default()
+            .with_placement(placement)
+            .with_refine_crossings(refine_crossings)
+            .with_faces(Faces::Trilinear);
         Method::Cubes(method)
             .extract(&mut Extractor::new(), sphere.into(), &grid, 0.0, &Execution { threads })
             .unwrap()

@@ -1,8 +1,7 @@
 //! Vertices of cubes against the exact crossing, in whole numbers: four units in the last place, wherever the grid is.
 
 use isostudy_extract::{
-    CellBox, ChunkExtractor, ChunkSettings, Control, Cubes, Diagonals, Faces, Grid, Method, ScalarField,
-    from_fn,
+    CellBox, ChunkExtractor, ChunkSettings, Control, Cubes, Faces, Grid, Method, ScalarField, from_fn,
 };
 
 /// Samples that have nothing to do with each other, by the nearest lattice point.
@@ -67,7 +66,7 @@ fn crossings_are_exact_to_four_units_in_the_last_place() {
             let grid = Grid::try_new(origin, spacing).unwrap();
             for (faces, levels) in [(Faces::default(), 0.0), (Faces::Trilinear, 4.0), (Faces::Decider, 64.0)]
             {
-                let method = Method::Cubes(Cubes { faces, diagonals: Diagonals::Fan, ..Cubes::default() });
+                let method = Method::Cubes(Cubes::default().with_faces(faces));
                 let field = noise((4 * o + s) as u32, grid, levels);
                 let mut extractor =
                     ChunkExtractor::try_new(&grid, &method, &ChunkSettings::default()).unwrap();

@@ -17,12 +17,15 @@ fn methods() -> Vec<Method> {
     let mut all = Vec::new();
     for faces in [Faces::SeparateInside, Faces::JoinInside, Faces::Decider, Faces::Trilinear] {
         for diagonals in [Diagonals::Fan, Diagonals::EdgeGroups, Diagonals::Quality] {
-            all.push(Method::Cubes(Cubes { faces, diagonals, ..Cubes::default() }));
-            all.push(Method::Macet(Macet { faces, diagonals, ..Macet::default() }));
+            all.push(Method::Cubes(Cubes::default().with_faces(faces).with_diagonals(diagonals)));
+            all.push(Method::Macet(Macet::default().with_faces(faces).with_diagonals(diagonals)));
         }
     }
     for gamma in [0.0, 0.3, 0.5] {
-        all.extend([Flat::Both, Flat::Neither].map(|flat| Method::SnapCubes(SnapCubes { gamma, flat })));
+        all.extend(
+            [Flat::Both, Flat::Neither]
+                .map(|flat| Method::SnapCubes(SnapCubes::default().with_gamma(gamma).with_flat(flat))),
+        );
     }
     all
 }

@@ -8,16 +8,10 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 fn method(faces: Faces, diagonals: Diagonals) -> Method {
-    Method::Cubes(Cubes { faces, diagonals, ..Cubes::default() })
+    Method::Cubes(Cubes::default().with_faces(faces).with_diagonals(diagonals))
 }
 
-const TRILINEAR: Cubes = Cubes {
-    faces: Faces::Trilinear,
-    diagonals: Diagonals::Fan,
-    placement: isostudy_extract::Placement::MeanOfCrossings,
-    refine_crossings: false,
-    edge_clamp: 0.0,
-};
+const TRILINEAR: Cubes = Cubes::new().with_faces(Faces::Trilinear);
 
 /// Whether the mesh of some samples is what the oracle says.
 fn is_right(

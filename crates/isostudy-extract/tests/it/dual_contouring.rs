@@ -60,7 +60,7 @@ fn mesh(method: Method, field: &dyn StudyField, cells: u32) -> TriangleMesh {
 fn every_setting() -> impl Iterator<Item = Method> {
     [false, true].into_iter().flat_map(|patches| {
         [false, true].map(|in_cell| {
-            Method::DualContouring(DualContouring { patches, in_cell, ..DualContouring::default() })
+            Method::DualContouring(DualContouring::default().with_patches(patches).with_in_cell(in_cell))
         })
     })
 }
@@ -180,9 +180,8 @@ fn connections_are_those_of_surface_nets() {
             + (9.0 * p.z).sin() * (9.0 * p.x).cos()
     });
     for patches in [false, true] {
-        let nets =
-            mesh(Method::SurfaceNets(SurfaceNets { patches, smoothing: 0, edge_clamp: 0.0 }), &field, 40);
-        let method = Method::DualContouring(DualContouring { patches, ..DualContouring::default() });
+        let nets = mesh(Method::SurfaceNets(SurfaceNets::default().with_patches(patches)), &field, 40);
+        let method = Method::DualContouring(DualContouring::default().with_patches(patches));
         let planes = mesh(method, &field, 40);
         assert_eq!(planes.positions.len(), nets.positions.len());
         let quads = |mesh: &TriangleMesh| -> Vec<Vec<u32>> {
@@ -214,7 +213,7 @@ fn what_has_no_normals_and_no_sense_is_refused() {
     let given = method.extract(&mut Extractor::new(), Source::Samples(&samples), &grid(8), 0.0, &ONE);
     assert_eq!(given.unwrap_err(), MethodError::NeedsField);
     for truncation in [-0.1, 1.5, f32::NAN] {
-        let method = Method::DualContouring(DualContouring { truncation, ..DualContouring::default() });
+        let method = Method::DualContouring(DualContouring::default().with_truncation(truncation));
         let text = method.check(&grid(8)).unwrap_err().to_string();
         assert!(text.contains("must be from 0 to 1"), "{text}");
     }

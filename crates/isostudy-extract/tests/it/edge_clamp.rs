@@ -13,7 +13,7 @@ const FAMILIES: [Family; 5] =
     [Family::White, Family::FiveLevels, Family::Spheres, Family::NoisyMagnitudes, Family::LowPassOnce];
 
 fn tetrahedra(arrangement: Arrangement, clustering: Clustering, edge_clamp: f32) -> Method {
-    Method::Tetrahedra(Tetrahedra { clustering, edge_clamp, ..Tetrahedra::new(arrangement) })
+    Method::Tetrahedra(Tetrahedra::new(arrangement).with_clustering(clustering).with_edge_clamp(edge_clamp))
 }
 
 fn mesh_of(volume: &Volume, method: &Method) -> TriangleMesh {
@@ -59,7 +59,7 @@ fn no_crossing_is_nearer_to_a_sample_point() {
         for family in FAMILIES {
             let simple = volume(Arrangement::SimpleCubic, family);
             let cubes =
-                |edge_clamp| mesh_of(&simple, &Method::Cubes(Cubes { edge_clamp, ..Cubes::default() }));
+                |edge_clamp| mesh_of(&simple, &Method::Cubes(Cubes::default().with_edge_clamp(edge_clamp)));
             let (mesh, plain) = (cubes(clamp), cubes(0.0));
             assert_eq!(mesh.triangles, plain.triangles, "{family:?}");
             for (p, before) in mesh.positions.iter().zip(&plain.positions) {
@@ -91,7 +91,7 @@ fn nets_have_means_of_crossings_that_were_kept_away() {
     let clamp = 0.3;
     for family in [Family::White, Family::Spheres] {
         let simple = volume(Arrangement::SimpleCubic, family);
-        let nets = Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: clamp });
+        let nets = Method::SurfaceNets(SurfaceNets::default().with_edge_clamp(clamp));
         let value = |p: Vec3| f64::from(isostudy_field::StudyField::sample(&simple, p));
         for p in &mesh_of(&simple, &nets).positions {
             let low = p.floor();
@@ -120,11 +120,13 @@ fn chunks_weld_to_the_whole() {
     let methods = [
         (
             Arrangement::SimpleCubic,
-            Method::Cubes(Cubes { edge_clamp: 0.2, placement: Placement::Projected, ..Cubes::default() }),
+            Method::Cubes(Cubes::default().with_edge_clamp(0.2).with_placement(Placement::Projected)),
         ),
         (
             Arrangement::SimpleCubic,
-            Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 1, edge_clamp: 0.2 }),
+            Method::SurfaceNets(
+                SurfaceNets::default().with_patches(true).with_smoothing(1).with_edge_clamp(0.2),
+            ),
         ),
         (Arrangement::BodyCentred, tetrahedra(Arrangement::BodyCentred, Clustering::Integrated, 0.2)),
         (Arrangement::FaceCentred, tetrahedra(Arrangement::FaceCentred, Clustering::None, 0.2)),
@@ -154,7 +156,7 @@ fn triangles_are_better_and_distances_worse() {
     let grid = BoxGrid { bounds, spacing: 0.05 };
     let ball = isostudy_field::Sphere { radius: 0.8 };
     let of = |edge_clamp| {
-        let method = Method::Cubes(Cubes { edge_clamp, ..Cubes::default() });
+        let method = Method::Cubes(Cubes::default().with_edge_clamp(edge_clamp));
         let mesh =
             method.extract(&mut Extractor::new(), Source::Study(&ball), &grid, 0.0, &ONE).unwrap().mesh;
         let away = mesh.positions.iter().map(|p| (p.length() - 0.8).abs() / 0.05).fold(0.0, f32::max);
@@ -171,8 +173,8 @@ fn half_of_an_edge_is_too_much() {
     let grid = BoxGrid::from(&volume.lattice());
     for edge_clamp in [0.5, -0.1, f32::NAN, f32::INFINITY] {
         for method in [
-            Method::Cubes(Cubes { edge_clamp, ..Cubes::default() }),
-            Method::SurfaceNets(SurfaceNets { edge_clamp, ..SurfaceNets::default() }),
+            Method::Cubes(Cubes::default().with_edge_clamp(edge_clamp)),
+            Method::SurfaceNets(SurfaceNets::default().with_edge_clamp(edge_clamp)),
             tetrahedra(Arrangement::SimpleCubic, Clustering::Integrated, edge_clamp),
         ] {
             let error = method.check(&grid).unwrap_err();

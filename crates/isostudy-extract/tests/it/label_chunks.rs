@@ -64,8 +64,10 @@ fn chunks_weld_to_the_whole() {
         let volume = volume(counts, &labels);
         for smoothing in [0, 1, 3] {
             for close in [false, true] {
-                let settings =
-                    LabelSettings { smoothing, close, only: if seed.is_multiple_of(3) { &[] } else { &[1] } };
+                let settings = LabelSettings::default()
+                    .with_smoothing(smoothing)
+                    .with_close(close)
+                    .with_only(if seed.is_multiple_of(3) { &[] } else { &[1] });
                 let Ok(whole) = volume.extract(&settings, &ONE) else { continue };
                 let border = i32::from(close);
                 let all = CellBox { start: [-border; 3], end: counts.map(|n| n as i32 - 1 + border) };

@@ -65,7 +65,7 @@ impl Labels {
     fn of_one(&self, label: u32, smoothing: u32, steps: [[f64; 3]; 3]) -> TriangleMesh {
         let values: Vec<f32> = self.labels.iter().map(|&of| f32::from(u8::from(of == label))).collect();
         let cells = VolumeCells { counts: self.counts, values: &values, origin: [1.0, -2.0, 3.0], steps };
-        let nets = Method::SurfaceNets(SurfaceNets { patches: false, smoothing, edge_clamp: 0.0 });
+        let nets = Method::SurfaceNets(SurfaceNets::default().with_smoothing(smoothing));
         cells.extract(&nets, &mut Extractor::new(), 0.5, &ONE).unwrap().mesh
     }
 
@@ -110,7 +110,7 @@ fn two_labels_have_the_net_of_two_samples() {
         for steps in [UNIT, ODD] {
             for closed in [true, false] {
                 let noise = Labels::noise([9, 8, 11], 2, seed, closed);
-                let settings = LabelSettings { smoothing, ..LabelSettings::default() };
+                let settings = LabelSettings::default().with_smoothing(smoothing);
                 let volume = LabelVolume { origin: [1.0, -2.0, 3.0], steps, ..noise.volume() };
                 let LabelledMesh { mesh, sides } = volume.extract(&settings, &ONE).unwrap().labelled;
                 let net = noise.of_one(1, smoothing, steps);
@@ -169,7 +169,7 @@ fn counts_are_those_of_numpy() {
     assert_eq!(samples, [1608, 1586, 1576, 1565, 1485]);
     assert!(counts.iter().map(|of| of.label).eq(0..5));
     // With background beyond the box every edge into it differs, but those from label 0.
-    let closed = volume.surface(&LabelSettings { close: true, ..LabelSettings::default() });
+    let closed = volume.surface(&LabelSettings::default().with_close(true));
     let [nx, ny, nz] = volume.counts;
     let outer = |axis: usize, far: bool| {
         let n = volume.counts[axis];
@@ -188,7 +188,7 @@ fn the_boundary_of_each_label_is_closed() {
     let balls = Labels::balls();
     let tried = [(&balls, [2, 5, 9], 0, false), (&balls, [2, 5, 9], 6, false), (&noise, [1, 2, 3], 0, true)];
     for (volume, labels, smoothing, crosses_by_turns) in tried {
-        let surface = volume.surface(&LabelSettings { smoothing, ..LabelSettings::default() });
+        let surface = volume.surface(&LabelSettings::default().with_smoothing(smoothing));
         for label in labels {
             let boundary = surface.labelled.boundary_of(label);
             assert!(is_closed(&boundary), "{label}");
@@ -225,7 +225,7 @@ fn the_boundary_of_each_label_is_closed() {
 fn volumes_are_those_of_samples() {
     let balls = Labels::balls();
     for smoothing in [0, 4] {
-        let surface = balls.surface(&LabelSettings { smoothing, ..LabelSettings::default() });
+        let surface = balls.surface(&LabelSettings::default().with_smoothing(smoothing));
         let mut sum = 0.0;
         for of in &surface.counts {
             let volume = surface.labelled.boundary_of(of.label).volume();
@@ -256,7 +256,7 @@ fn names_do_not_matter() {
     let renamed =
         Labels { counts: noise.counts, labels: noise.labels.iter().map(|&l| names[l as usize]).collect() };
     for smoothing in [0, 3] {
-        let settings = LabelSettings { smoothing, ..LabelSettings::default() };
+        let settings = LabelSettings::default().with_smoothing(smoothing);
         let [before, after] = [&noise, &renamed].map(|of| of.surface(&settings).labelled);
         assert_eq!(before.mesh.positions, after.mesh.positions);
         let turned = |t: [u32; 3]| {
@@ -284,11 +284,11 @@ fn names_do_not_matter() {
 #[test]
 fn chosen_labels_are_bounded_by_themselves() {
     let noise = Labels::noise([9, 8, 7], 4, 11, true);
-    let of_two = noise.surface(&LabelSettings { only: &[2], ..LabelSettings::default() });
+    let of_two = noise.surface(&LabelSettings::default().with_only(&[2]));
     let net = noise.of_one(2, 0, UNIT);
     assert_eq!(of_two.labelled.mesh.triangles, net.triangles);
     assert!(of_two.labelled.sides.iter().all(|sides| *sides == [2, 0]));
-    let some = noise.surface(&LabelSettings { only: &[3, 1], ..LabelSettings::default() });
+    let some = noise.surface(&LabelSettings::default().with_only(&[3, 1]));
     assert_eq!(some.labelled.pairs(), [[1, 0], [3, 0], [3, 1]]);
     assert!(some.counts.iter().map(|of| of.label).eq([0, 1, 3]));
 }
@@ -298,7 +298,7 @@ fn chosen_labels_are_bounded_by_themselves() {
 fn boundaries_are_closed_if_that_is_wanted() {
     let noise = Labels::noise([5, 6, 7], 4, 13, false);
     let surface =
-        |close| noise.surface(&LabelSettings { close, smoothing: 2, ..LabelSettings::default() }).labelled;
+        |close| noise.surface(&LabelSettings::default().with_close(close).with_smoothing(2)).labelled;
     let (open, closed) = (surface(false), surface(true));
     assert!(
         (1..4).all(|label| is_closed(&closed.boundary_of(label)) && !is_closed(&open.boundary_of(label)))
@@ -307,7 +307,7 @@ fn boundaries_are_closed_if_that_is_wanted() {
     assert!(bounds.min.min_element() > -1.0 && bounds.min.max_element() < 0.0, "{bounds:?}");
     // One label alone has a boundary then.
     let full = Labels::of([3, 4, 5], |_| 6);
-    let block = full.surface(&LabelSettings { close: true, ..LabelSettings::default() }).labelled;
+    let block = full.surface(&LabelSettings::default().with_close(true)).labelled;
     assert_eq!(block.mesh.triangles.len(), 2 * 2 * (3 * 4 + 4 * 5 + 5 * 3));
     assert_eq!(block.mesh.bounds().unwrap().size().to_array(), [3.0, 4.0, 5.0]);
 }
@@ -315,7 +315,7 @@ fn boundaries_are_closed_if_that_is_wanted() {
 #[test]
 fn threads_change_nothing() {
     let noise = Labels::noise([30, 30, 30], 5, 17, false);
-    let settings = LabelSettings { smoothing: 5, close: true, ..LabelSettings::default() };
+    let settings = LabelSettings::default().with_smoothing(5).with_close(true);
     let of = |threads| noise.volume().extract(&settings, &Execution { threads }).unwrap();
     assert!(of(1) == of(3) && of(1) == of(2));
 }
@@ -328,17 +328,17 @@ fn what_is_no_segmentation_is_refused() {
     let alone = Labels::of([4, 4, 4], |_| 7);
     assert_eq!(error(&alone.volume(), &all), LabelError::Alone { label: 7 });
     let nothing = Labels::of([4, 4, 4], |_| 0);
-    let close = LabelSettings { close: true, ..all };
+    let close = all.with_close(true);
     assert_eq!(error(&nothing.volume(), &close), LabelError::Alone { label: 0 });
-    let absent = error(&noise.volume(), &LabelSettings { only: &[1, 9], ..all });
+    let absent = error(&noise.volume(), &all.with_only(&[1, 9]));
     assert_eq!(absent.to_string(), "no sample has the label 9; labels are 0, 1, 2");
-    assert_eq!(error(&noise.volume(), &LabelSettings { only: &[0], ..all }), LabelError::Background);
-    let smoothing = LabelSettings { smoothing: 65, ..all };
+    assert_eq!(error(&noise.volume(), &all.with_only(&[0])), LabelError::Background);
+    let smoothing = all.with_smoothing(65);
     assert_eq!(error(&noise.volume(), &smoothing), LabelError::Smoothing { smoothing: 65 });
     let densities = Labels::of([70, 50, 40], |[x, y, z]| ((z * 50 + y) * 70 + x) as u32 / 2);
     assert_eq!(error(&densities.volume(), &all), LabelError::TooMany);
     let many = Labels::of([70, 50, 40], |[x, y, z]| ((z * 50 + y) * 70 + x) as u32 / 3);
-    let said = error(&many.volume(), &LabelSettings { only: &[99_999], ..all }).to_string();
+    let said = error(&many.volume(), &all.with_only(&[99_999])).to_string();
     assert!(said.ends_with("10, 11, 46655 more"), "{said}");
     let flat = LabelVolume { counts: [64, 1, 1], ..noise.volume() };
     assert_eq!(error(&flat, &all), LabelError::Flat { counts: [64, 1, 1] });

@@ -116,7 +116,7 @@ fn memory_covers_what_the_counts_say() {
 fn memory_is_that_of_the_extractor_the_settings_choose() {
     let lattice = body_centred(UNIT, 0.0016).unwrap();
     let indexed = ExtractSettings::default();
-    let accumulated = ExtractSettings { positions: Positions::Accumulated { chunks: 8 }, ..indexed };
+    let accumulated = indexed.with_positions(Positions::Accumulated { chunks: 8 });
     let on = |threads| Execution { threads };
     assert_eq!(lattice.memory_bytes_for(&accumulated, &on(1)), lattice.memory_bytes());
     assert_eq!(lattice.memory_bytes_for(&indexed, &on(1)), lattice.streaming_bytes(1));
@@ -133,16 +133,13 @@ fn settings_are_checked() {
     let lattice = body_centred(UNIT, 0.5).unwrap();
     let run = |settings| extract(&Sphere::default(), &lattice, &settings, &Execution::default()).map(drop);
     for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        let error = run(ExtractSettings { isovalue: value, ..ExtractSettings::default() }).unwrap_err();
+        let error = run(ExtractSettings::default().with_isovalue(value)).unwrap_err();
         assert!(matches!(error, ExtractError::Isovalue { .. }), "{error}");
     }
     let none = Positions::Accumulated { chunks: 0 };
-    assert_eq!(
-        run(ExtractSettings { positions: none, ..ExtractSettings::default() }),
-        Err(ExtractError::NoChunks)
-    );
+    assert_eq!(run(ExtractSettings::default().with_positions(none)), Err(ExtractError::NoChunks));
     let many = Positions::Accumulated { chunks: u32::MAX };
-    assert_eq!(run(ExtractSettings { positions: many, ..ExtractSettings::default() }), Ok(()));
+    assert_eq!(run(ExtractSettings::default().with_positions(many)), Ok(()));
 }
 
 /// A field of one repeated odd value, and a ball where it is not.
@@ -160,7 +157,7 @@ fn odd_values_give_a_mesh_of_numbers() {
         for arrangement in [Arrangement::BodyCentred, Arrangement::SimpleCubic] {
             for clustering in [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse] {
                 let lattice = Lattice::try_new(arrangement, UNIT, 0.15).unwrap();
-                let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+                let settings = ExtractSettings::default().with_clustering(clustering);
                 let mesh = extract(&Odd(value), &lattice, &settings, &Execution::default()).unwrap().mesh;
                 assert!(mesh.triangles.len() > 100, "{value}");
                 let bounds = lattice.bounds();
@@ -178,7 +175,7 @@ fn odd_values_give_a_mesh_of_numbers() {
 #[test]
 fn not_a_number_is_outside() {
     let lattice = body_centred(UNIT, 0.15).unwrap();
-    let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_clustering(Clustering::None);
     let run = |field: Odd| extract(&field, &lattice, &settings, &Execution::default()).unwrap();
     assert_eq!(run(Odd(f32::NAN)).counts.crossings, run(Odd(-1.0)).counts.crossings);
     assert_ne!(run(Odd(f32::NAN)).counts.crossings, run(Odd(1.0)).counts.crossings);
@@ -212,7 +209,7 @@ fn one_cell_is_a_lattice() {
                 (self.0)(p)
             }
         }
-        let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
+        let settings = ExtractSettings::default().with_clustering(Clustering::None);
         let counts = extract(&Of(corner_ball), &lattice, &settings, &Execution::default()).unwrap().counts;
         // The corner inside sees its three cube edges, and per arrangement its diagonals.
         assert_eq!(counts.crossings, 7);
@@ -253,7 +250,7 @@ fn cells_visited_are_those_that_the_surface_may_meet() {
         }
         let lattice = Lattice::try_new(arrangement, UNIT, spacing).unwrap();
         assert_eq!(lattice.cells(), [CELLS as u32; 3]);
-        let settings = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
+        let settings = ExtractSettings::default().with_clustering(Clustering::None);
         for threads in [1, 3] {
             let counts = extract(&sphere, &lattice, &settings, &Execution { threads }).unwrap().counts;
             assert_eq!((counts.cells, counts.cells_visited), (32 * 32 * 32, expected), "{arrangement}");

@@ -16,17 +16,12 @@ use crate::two_levels::{
 };
 
 fn cubes(faces: Faces, diagonals: Diagonals) -> Method {
-    Method::Cubes(Cubes { faces, diagonals, ..Cubes::default() })
+    Method::Cubes(Cubes::default().with_faces(faces).with_diagonals(diagonals))
 }
 
-const NETS: Method = Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 });
-const SMOOTHED: Method = Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 1, edge_clamp: 0.0 });
-const PLANES: Method = Method::DualContouring(DualContouring {
-    patches: false,
-    truncation: 1e-3,
-    in_cell: false,
-    tolerance: 0.0,
-});
+const NETS: Method = Method::SurfaceNets(SurfaceNets::new());
+const SMOOTHED: Method = Method::SurfaceNets(SurfaceNets::new().with_smoothing(1));
+const PLANES: Method = Method::DualContouring(DualContouring::new());
 
 const FACES: [Faces; 4] = [Faces::SeparateInside, Faces::JoinInside, Faces::Decider, Faces::Trilinear];
 
@@ -105,7 +100,7 @@ fn octrees_of_three_levels_are_closed() {
         let octree = Octree::random(seed);
         met += usize::from((0..3).all(|level| octree.leaves.iter().any(|leaf| leaf.0 == level)));
         let of_cubes = cubes(FACES[seed as usize % 4], Diagonals::Fan);
-        let moved = Method::Cubes(Cubes { placement: Placement::Relaxed, ..Cubes::default() });
+        let moved = Method::Cubes(Cubes::default().with_placement(Placement::Relaxed));
         for method in [of_cubes, moved].into_iter().take(if seed < 4 { 2 } else { 1 }) {
             let mut extractor = extractor(0.25, &method);
             let reach = 4.0 * 0.25 * REACH as f32 - 1.1;
@@ -262,9 +257,9 @@ fn what_cannot_be_done_is_an_error() {
         nets.extract(&field, 1, odd, &coarser, Control::default()),
         Err(LevelError::Odd { cells: odd })
     );
-    let patches = Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0, edge_clamp: 0.0 });
+    let patches = Method::SurfaceNets(SurfaceNets::default().with_patches(true));
     assert_eq!(of(&patches), Err(LevelError::Method));
-    let wrong = Method::DualContouring(DualContouring { truncation: f32::NAN, ..DualContouring::default() });
+    let wrong = Method::DualContouring(DualContouring::default().with_truncation(f32::NAN));
     assert!(matches!(of(&wrong), Err(LevelError::Chunk(ChunkError::Settings(_)))));
     // Twice the numbers are beyond i32.
     let far = CellBox { start: [i32::MAX - 5000, 0, 0], end: [i32::MAX - 4990, 4, 4] };

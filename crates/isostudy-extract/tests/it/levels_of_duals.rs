@@ -11,15 +11,10 @@ use isostudy_mesh::topology::topology;
 /// Vertices that stay in their cells, those of the presets, which may leave them, and those that are drawn to
 /// each other.
 const DUALS: [Method; 4] = [
-    Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 }),
-    Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 3, edge_clamp: 0.0 }),
-    Method::DualContouring(DualContouring { patches: false, truncation: 0.1, in_cell: true, tolerance: 0.0 }),
-    Method::DualContouring(DualContouring {
-        patches: false,
-        truncation: 1e-3,
-        in_cell: false,
-        tolerance: 0.0,
-    }),
+    Method::SurfaceNets(SurfaceNets::new()),
+    Method::SurfaceNets(SurfaceNets::new().with_smoothing(3)),
+    Method::DualContouring(DualContouring::new().with_truncation(0.1).with_in_cell(true)),
+    Method::DualContouring(DualContouring::new()),
 ];
 
 /// Of how many ways one is tried with each of [`DUALS`]: the field is called most for tangent planes.

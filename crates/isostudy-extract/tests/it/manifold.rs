@@ -17,7 +17,7 @@ const MERGING: [Clustering; 3] =
     [Clustering::Integrated, Clustering::EdgeCollapse, Clustering::IntegratedCollapse];
 
 fn run(volume: &Volume, clustering: Clustering, topology: Topology) -> Extraction {
-    let settings = ExtractSettings { clustering, topology, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_clustering(clustering).with_topology(topology);
     extract(volume, &volume.lattice(), &settings, &Execution { threads: 1 }).unwrap()
 }
 

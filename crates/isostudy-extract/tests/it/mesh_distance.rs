@@ -263,7 +263,7 @@ fn the_extracted_bunny_is_one_closed_surface_of_the_published_size() {
     ] {
         let lattice = Lattice::try_new(arrangement, BOX, 0.02).unwrap();
         let rules = Topology::Published;
-        let settings = ExtractSettings { clustering, topology: rules, ..ExtractSettings::default() };
+        let settings = ExtractSettings::default().with_clustering(clustering).with_topology(rules);
         let extraction = extract(&field, &lattice, &settings, &Execution::default()).unwrap();
         let counts = extraction.counts;
         let evaluated = counts.tetrahedra.unwrap().tetrahedra_evaluated;
@@ -292,12 +292,10 @@ fn the_studys_bunny_has_no_handle_and_no_bubble() {
                 for positions in [Positions::Indexed, Positions::Accumulated { chunks: 16 }] {
                     let lattice = Lattice::try_new(arrangement, BOX, spacing).unwrap();
                     let rules = Topology::Published;
-                    let settings = ExtractSettings {
-                        clustering,
-                        positions,
-                        topology: rules,
-                        ..ExtractSettings::default()
-                    };
+                    let settings = ExtractSettings::default()
+                        .with_clustering(clustering)
+                        .with_positions(positions)
+                        .with_topology(rules);
                     let extraction = extract(&field, &lattice, &settings, &Execution::default()).unwrap();
                     let report = topology(&extraction.mesh);
                     let case = format!("{arrangement:?} {clustering:?} {spacing} {positions:?}: {report:?}");

@@ -5,9 +5,9 @@ use crate::survey::survey;
 use glam::Vec3;
 use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
-    Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, ContinuedCells, Cubes, Execution,
-    ExtractError, Extraction, Extractor, LatticeError, Method, MethodError, Placement, Positions, Source,
-    Tetrahedra, Topology, kinds, presets, weld_chunks,
+    Arrangement, BoxGrid, ChunkExtractor, ChunkSettings, Clustering, ContinuedCells, Execution, ExtractError,
+    Extraction, Extractor, LatticeError, Method, MethodError, Placement, Positions, Source, Tetrahedra,
+    Topology, kinds, presets, weld_chunks,
 };
 use isostudy_field::{Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};
@@ -35,15 +35,14 @@ fn all() -> Vec<Tetrahedra> {
                         Placement::Relaxed,
                     ] {
                         for refine_crossings in [false, true] {
-                            found.push(Tetrahedra {
-                                arrangement,
-                                clustering,
-                                topology,
-                                positions,
-                                placement,
-                                refine_crossings,
-                                edge_clamp: 0.0,
-                            });
+                            found.push(
+                                Tetrahedra::new(arrangement)
+                                    .with_clustering(clustering)
+                                    .with_topology(topology)
+                                    .with_positions(positions)
+                                    .with_placement(placement)
+                                    .with_refine_crossings(refine_crossings),
+                            );
                         }
                     }
                 }
@@ -70,15 +69,14 @@ fn a_method_is_the_function_with_its_settings_or_refuses_as_it_does() {
     let (mut made, mut refused) = (0, 0);
     for tetrahedra in all() {
         let (what, method) = (format!("{tetrahedra:?}"), Method::Tetrahedra(tetrahedra));
-        let settings = ExtractSettings {
-            isovalue: 0.05,
-            clustering: tetrahedra.clustering,
-            topology: tetrahedra.topology,
-            positions: tetrahedra.positions,
-            placement: tetrahedra.placement,
-            refine_crossings: tetrahedra.refine_crossings,
-            edge_clamp: tetrahedra.edge_clamp,
-        };
+        let settings = ExtractSettings::default()
+            .with_isovalue(0.05)
+            .with_clustering(tetrahedra.clustering)
+            .with_topology(tetrahedra.topology)
+            .with_positions(tetrahedra.positions)
+            .with_placement(tetrahedra.placement)
+            .with_refine_crossings(tetrahedra.refine_crossings)
+            .with_edge_clamp(tetrahedra.edge_clamp);
         let lattice = Lattice::try_new(tetrahedra.arrangement, BOX, GRID.spacing).unwrap();
         let source = Source::Study(&sphere);
         let result = method.extract_into(&mut extractor, source, &GRID, 0.05, &ONE, &mut extraction);
@@ -168,8 +166,8 @@ fn presets_keep_their_other_promises() {
             preset.method.extract(&mut extractor, (&sphere as &dyn StudyField).into(), &GRID, 0.0, &ONE);
         let mesh = mesh.unwrap().mesh;
         let placed = |placement| match preset.method {
-            Method::Tetrahedra(tetrahedra) => Method::Tetrahedra(Tetrahedra { placement, ..tetrahedra }),
-            Method::Cubes(cubes) => Method::Cubes(Cubes { placement, ..cubes }),
+            Method::Tetrahedra(tetrahedra) => Method::Tetrahedra(tetrahedra.with_placement(placement)),
+            Method::Cubes(cubes) => Method::Cubes(cubes.with_placement(placement)),
             _ => panic!("it has no placements"),
         };
         let arrangement = match preset.method {

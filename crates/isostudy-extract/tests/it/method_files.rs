@@ -56,15 +56,14 @@ fn every_combination_is_read_and_comes_back() {
                                  topology = \"{t}\", placement = \"{p}\", positions = {q}, \
                                  refine_crossings = {refine_crossings} }}"
                             );
-                            let expected = Method::Tetrahedra(Tetrahedra {
-                                arrangement,
-                                clustering,
-                                topology,
-                                positions,
-                                placement,
-                                refine_crossings,
-                                edge_clamp: 0.0,
-                            });
+                            let expected = Method::Tetrahedra(
+                                Tetrahedra::new(arrangement)
+                                    .with_clustering(clustering)
+                                    .with_topology(topology)
+                                    .with_positions(positions)
+                                    .with_placement(placement)
+                                    .with_refine_crossings(refine_crossings),
+                            );
                             assert_eq!(read(&text), Ok(expected), "{text}");
                             let written = Table::try_from(expected).unwrap();
                             assert_eq!(written["kind"].as_str(), Some("tetrahedra"));
@@ -80,7 +79,7 @@ fn every_combination_is_read_and_comes_back() {
 #[test]
 fn keys_left_out_are_the_librarys_defaults() {
     let text = r#"recipe = { kind = "tetrahedra", arrangement = "body-centred", clustering = "integrated", placement = "relaxed" }"#;
-    let relaxed = Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
+    let relaxed = Tetrahedra::new(Arrangement::BodyCentred).with_placement(Placement::Relaxed);
     assert_eq!(read(text), Ok(Method::Tetrahedra(relaxed)));
     let least = r#"recipe = { kind = "tetrahedra", arrangement = "simple-cubic" }"#;
     assert_eq!(read(least), Ok(Method::Tetrahedra(Tetrahedra::new(Arrangement::SimpleCubic))));
@@ -121,12 +120,12 @@ fn what_is_not_known_is_refused_by_name() {
 #[test]
 fn snapped_cubes_are_read_and_written() {
     for (flat, word) in [(Flat::Both, "both"), (Flat::Neither, "neither")] {
-        let wanted = Method::SnapCubes(SnapCubes { gamma: 0.25, flat });
+        let wanted = Method::SnapCubes(SnapCubes::default().with_gamma(0.25).with_flat(flat));
         let keys = format!(r#"recipe = {{ kind = "snap-cubes", gamma = 0.25, flat = "{word}" }}"#);
         assert_eq!(read(&keys), Ok(wanted));
         assert_eq!(toml::from_str::<Method>(&toml::to_string(&wanted).unwrap()).unwrap(), wanted);
     }
-    let published = Method::SnapCubes(SnapCubes { gamma: 0.3, flat: Flat::Both });
+    let published = Method::SnapCubes(SnapCubes::default().with_gamma(0.3).with_flat(Flat::Both));
     assert_eq!(read(r#"recipe = { kind = "snap-cubes" }"#), Ok(published));
     let error = read(r#"recipe = { kind = "snap-cubes", faces = "decider" }"#).unwrap_err();
     assert!(error.contains("faces") && error.contains("gamma"), "{error}");
@@ -134,7 +133,7 @@ fn snapped_cubes_are_read_and_written() {
 
 #[test]
 fn macet_is_read_and_written() {
-    let wanted = Macet { faces: Faces::Decider, pull: 0.5, steps: 7, share: 0.25, ..Macet::default() };
+    let wanted = Macet::default().with_faces(Faces::Decider).with_pull(0.5).with_steps(7).with_share(0.25);
     let keys = r#"recipe = { kind = "macet", faces = "decider", pull = 0.5, steps = 7, share = 0.25 }"#;
     assert_eq!(read(keys), Ok(Method::Macet(wanted)));
     let text = toml::to_string(&Method::Macet(wanted)).unwrap();
@@ -145,7 +144,7 @@ fn macet_is_read_and_written() {
 
 #[test]
 fn surface_nets_are_read_and_written() {
-    let wanted = Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 8, edge_clamp: 0.0 });
+    let wanted = Method::SurfaceNets(SurfaceNets::default().with_patches(true).with_smoothing(8));
     assert_eq!(read(r#"recipe = { kind = "surface-nets", patches = true, smoothing = 8 }"#), Ok(wanted));
     assert_eq!(toml::from_str::<Method>(&toml::to_string(&wanted).unwrap()).unwrap(), wanted);
     assert_eq!(
@@ -160,7 +159,11 @@ fn surface_nets_are_read_and_written() {
 
 #[test]
 fn dual_contouring_is_read_and_written() {
-    let wanted = DualContouring { patches: true, truncation: 0.01, in_cell: true, tolerance: 0.25 };
+    let wanted = DualContouring::default()
+        .with_patches(true)
+        .with_truncation(0.01)
+        .with_in_cell(true)
+        .with_tolerance(0.25);
     let keys = r#"recipe = { kind = "dual-contouring", patches = true, truncation = 0.01, in_cell = true, tolerance = 0.25 }"#;
     assert_eq!(read(keys), Ok(Method::DualContouring(wanted)));
     let text = toml::to_string(&Method::DualContouring(wanted)).unwrap();
@@ -173,7 +176,9 @@ fn dual_contouring_is_read_and_written() {
 #[test]
 fn continuation_is_read_and_written() {
     let seeds = Seeds::try_new(&[[0.0, 0.5, -1.0], [2.0, 0.0, 0.0]]).unwrap();
-    let wanted = Method::Continuation(Continuation { cells: ContinuedCells::Tetrahedra, seeds, search: 4 });
+    let wanted = Method::Continuation(
+        Continuation::default().with_cells(ContinuedCells::Tetrahedra).with_seeds(seeds).with_search(4),
+    );
     let keys = r#"recipe = { kind = "continuation", cells = "tetrahedra", seeds = [[0, 0.5, -1], [2, 0, 0]], search = 4 }"#;
     assert_eq!(read(keys), Ok(wanted));
     assert_eq!(toml::from_str::<Method>(&toml::to_string(&wanted).unwrap()).unwrap(), wanted);
@@ -199,13 +204,13 @@ fn cubes_are_read_and_written() {
         for (diagonals, diagonal) in
             [(Diagonals::Fan, "fan"), (Diagonals::EdgeGroups, "edge-groups"), (Diagonals::Quality, "quality")]
         {
-            let wanted = Method::Cubes(Cubes {
-                faces,
-                diagonals,
-                placement: Placement::Projected,
-                refine_crossings: true,
-                edge_clamp: 0.0,
-            });
+            let wanted = Method::Cubes(
+                Cubes::default()
+                    .with_faces(faces)
+                    .with_diagonals(diagonals)
+                    .with_placement(Placement::Projected)
+                    .with_refine_crossings(true),
+            );
             let keys = format!(
                 r#"kind = "cubes", faces = "{word}", diagonals = "{diagonal}", placement = "projected", refine_crossings = true"#
             );

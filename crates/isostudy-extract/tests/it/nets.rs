@@ -3,7 +3,7 @@
 use glam::Vec3;
 use isostudy_cells::Cell;
 use isostudy_extract::{
-    BoxGrid, ChunkExtractor, ChunkSettings, Cubes, Execution, Extractor, Faces, Method, Source, SurfaceNets,
+    BoxGrid, ChunkExtractor, ChunkSettings, Cubes, Execution, Extractor, Method, Source, SurfaceNets,
     weld_chunks,
 };
 use isostudy_field::{Gyroid, StudyField};
@@ -13,8 +13,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 const ONE: Execution = Execution { threads: 1 };
-const NETS: Method = Method::SurfaceNets(SurfaceNets { patches: false, smoothing: 0, edge_clamp: 0.0 });
-const MANIFOLD: Method = Method::SurfaceNets(SurfaceNets { patches: true, smoothing: 0, edge_clamp: 0.0 });
+const NETS: Method = Method::SurfaceNets(SurfaceNets::new());
+const MANIFOLD: Method = Method::SurfaceNets(SurfaceNets::new().with_patches(true));
 
 /// Samples of a box, x fastest, with steps of 1.
 struct Volume {
@@ -286,7 +286,7 @@ fn counts_are_those_of_other_programs() {
         -wall.max(p.length() - 0.9017)
     };
     let gyroid = Formula(gyroid);
-    let of_cubes = Method::Cubes(Cubes { faces: Faces::SeparateInside, ..Cubes::default() });
+    let of_cubes = Method::Cubes(Cubes::default());
     let (_, _, _, primal) = count(&gyroid, &of_cubes);
     let (vertices, quads, four_sided, _) = count(&gyroid, &NETS);
     assert_eq!((vertices, quads, four_sided), (29_013, 29_184, 96));
@@ -327,7 +327,9 @@ fn threads_and_chunks_do_not_show() {
     let bounds = Bounds { min: Vec3::splat(-1.03), max: Vec3::new(1.1, 0.9, 2.4) };
     let grid = BoxGrid { bounds, spacing: 0.05 };
     let smoothed = [false, true].into_iter().flat_map(|patches| {
-        [1, 4].map(|smoothing| Method::SurfaceNets(SurfaceNets { patches, smoothing, edge_clamp: 0.0 }))
+        [1, 4].map(|smoothing| {
+            Method::SurfaceNets(SurfaceNets::default().with_patches(patches).with_smoothing(smoothing))
+        })
     });
     for method in [NETS, MANIFOLD].into_iter().chain(smoothed) {
         let field: &dyn StudyField = &gyroid;
@@ -415,11 +417,7 @@ fn smoothing_goes_half_the_way_to_linked_cells() {
                 place[axis] = f64::midpoint(before[v][axis], mean).clamp(low, low + 1.0);
             }
         }
-        let mesh = volume.mesh(&Method::SurfaceNets(SurfaceNets {
-            patches: false,
-            smoothing: steps,
-            edge_clamp: 0.0,
-        }));
+        let mesh = volume.mesh(&Method::SurfaceNets(SurfaceNets::default().with_smoothing(steps)));
         for (p, want) in mesh.positions.iter().zip(&wanted) {
             let is_there =
                 p.to_array().iter().zip(want).all(|(is, want)| (f64::from(*is) - want).abs() < 1e-4);
@@ -454,7 +452,8 @@ fn smoothing_takes_the_steps_out_of_labels() {
         if square < radius * radius { 1.0 } else { -1.0 }
     });
     let errors = [0, 2, 8].map(|smoothing| {
-        let mesh = ball.mesh(&Method::SurfaceNets(SurfaceNets { patches: true, smoothing, edge_clamp: 0.0 }));
+        let mesh = ball
+            .mesh(&Method::SurfaceNets(SurfaceNets::default().with_patches(true).with_smoothing(smoothing)));
         let found = topology(&mesh);
         assert!(found.is_closed_manifold() && found.euler_characteristic == 2);
         let facing = |t: &[u32; 3]| {
@@ -469,7 +468,7 @@ fn smoothing_takes_the_steps_out_of_labels() {
 #[test]
 fn more_smoothing_than_there_may_be_is_refused() {
     for (smoothing, is_allowed) in [(64, true), (65, false), (u32::MAX, false)] {
-        let method = Method::SurfaceNets(SurfaceNets { patches: false, smoothing, edge_clamp: 0.0 });
+        let method = Method::SurfaceNets(SurfaceNets::default().with_smoothing(smoothing));
         let grid = Volume::noise([5; 3], 1, true).grid();
         assert_eq!(method.check(&grid).is_ok(), is_allowed);
         let chunks = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default());

@@ -58,7 +58,7 @@ fn grid(cells: u32) -> BoxGrid {
 }
 
 fn method(patches: bool, tolerance: f32) -> Method {
-    Method::DualContouring(DualContouring { patches, tolerance, ..DualContouring::default() })
+    Method::DualContouring(DualContouring::default().with_patches(patches).with_tolerance(tolerance))
 }
 
 fn extraction(method: Method, field: &dyn StudyField, cells: u32) -> Extraction {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
-use isostudy_extract::{Arrangement, Clustering, Execution, Extraction, Placement, Positions, Topology};
+use isostudy_extract::{Arrangement, Clustering, Execution, Extraction};
 use isostudy_field::{Asteroid, Gyroid, MeshDistance, Sphere, StudyField};
 use isostudy_mesh::topology::topology;
 use isostudy_mesh::{Bounds, TriangleMesh};
@@ -10,18 +10,10 @@ use isostudy_mesh::{Bounds, TriangleMesh};
 const BOTH: [Arrangement; 2] = [Arrangement::BodyCentred, Arrangement::SimpleCubic];
 const CUBE: Bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
 
-const UNCLUSTERED: ExtractSettings = ExtractSettings {
-    isovalue: 0.0,
-    clustering: Clustering::None,
-    topology: Topology::Guarded,
-    placement: Placement::MeanOfCrossings,
-    refine_crossings: false,
-    edge_clamp: 0.0,
-    positions: Positions::Indexed,
-};
+const UNCLUSTERED: ExtractSettings = ExtractSettings::new().with_clustering(Clustering::None);
 
 fn surface(field: &dyn StudyField, lattice: &Lattice, isovalue: f32) -> Extraction {
-    let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_isovalue(isovalue);
     extract(field, lattice, &settings, &Execution { threads: 1 }).unwrap()
 }
 

@@ -24,7 +24,8 @@ fn cube(half: f32) -> Bounds {
 /// Every placement but the published one.
 fn others(base: ExtractSettings) -> impl Iterator<Item = ExtractSettings> {
     let all = PLACEMENTS.into_iter().flat_map(move |placement| {
-        [false, true].map(|refine_crossings| ExtractSettings { placement, refine_crossings, ..base })
+        [false, true]
+            .map(|refine_crossings| base.with_placement(placement).with_refine_crossings(refine_crossings))
     });
     all.filter(move |settings| *settings != base)
 }
@@ -80,7 +81,7 @@ fn no_triangle_of_a_smooth_surface_changes_or_turns_over() {
                 (Clustering::Integrated, Topology::Published),
                 (Clustering::None, Topology::Guarded),
             ] {
-                let base = ExtractSettings { clustering, topology, ..ExtractSettings::default() };
+                let base = ExtractSettings::default().with_clustering(clustering).with_topology(topology);
                 let moved = check(field, &lattice, base);
                 assert!(moved > 100, "{arrangement:?} {base:?}");
             }
@@ -95,7 +96,7 @@ fn no_triangle_of_noise_changes_or_turns_over() {
             for clustering in [Clustering::Integrated, Clustering::None] {
                 let volume = Volume::random(arrangement, 5, family, seed);
                 let lattice = volume.lattice();
-                let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+                let settings = ExtractSettings::default().with_clustering(clustering);
                 check(&volume, &lattice, settings);
                 check(&volume.closed(), &lattice, settings);
             }
@@ -108,7 +109,7 @@ fn collapsed_meshes_stay_manifold() {
     for arrangement in BOTH {
         let lattice = Lattice::try_new(arrangement, cube(1.0), 0.1).unwrap();
         for clustering in [Clustering::EdgeCollapse, Clustering::IntegratedCollapse] {
-            for settings in others(ExtractSettings { clustering, ..ExtractSettings::default() }) {
+            for settings in others(ExtractSettings::default().with_clustering(clustering)) {
                 let mesh = extract(&Asteroid::default(), &lattice, &settings, &ONE).unwrap().mesh;
                 let report = topology(&mesh);
                 assert!(report.is_closed_manifold(), "{settings:?}: {report:?}");
@@ -123,7 +124,7 @@ fn projected_vertices_lie_on_the_surface_and_relaxed_ones_make_better_triangles(
     let sphere = Sphere { radius: 0.8 };
     let lattice = |arrangement| Lattice::try_new(arrangement, cube(1.0), 0.05).unwrap();
     let with = |placement, arrangement| {
-        let settings = ExtractSettings { placement, ..ExtractSettings::default() };
+        let settings = ExtractSettings::default().with_placement(placement);
         extract(&sphere, &lattice(arrangement), &settings, &ONE).unwrap().mesh
     };
     for (arrangement, published_quality) in [(BOTH[0], 0.92), (BOTH[1], 0.845)] {
@@ -157,8 +158,8 @@ fn refined_crossings_lie_on_the_surface_and_on_their_edges() {
     let radius = 0.4f32.powf(0.25);
     for arrangement in BOTH {
         let lattice = Lattice::try_new(arrangement, cube(1.0), 0.1).unwrap();
-        let plain = ExtractSettings { clustering: Clustering::None, ..ExtractSettings::default() };
-        let refined = ExtractSettings { refine_crossings: true, ..plain };
+        let plain = ExtractSettings::default().with_clustering(Clustering::None);
+        let refined = plain.with_refine_crossings(true);
         let [plain, refined] =
             [plain, refined].map(|settings| extract(&Steep, &lattice, &settings, &ONE).unwrap().mesh);
         let off = |p: &Vec3| f64::from((p.length() - radius).abs());
@@ -188,7 +189,7 @@ fn curvature_draws_vertices_to_creases() {
     for arrangement in BOTH {
         let lattice = Lattice::try_new(arrangement, cube(1.2), 0.08).unwrap();
         let distances = [Placement::MeanOfCrossings, Placement::CurvatureWeighted].map(|placement| {
-            let settings = ExtractSettings { placement, ..ExtractSettings::default() };
+            let settings = ExtractSettings::default().with_placement(placement);
             let mesh = extract(&Block, &lattice, &settings, &ONE).unwrap().mesh;
             accuracy(&mesh, &Block, 0.0, &BoxGrid::from(&lattice), &ONE).unwrap().distance.mean
         });

@@ -64,8 +64,10 @@ fn extract_row(row: &Row) -> Extraction {
         other => panic!("{other}"),
     };
     let topology = Topology::Published;
-    let settings =
-        ExtractSettings { clustering, topology, positions: PUBLISHED, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default()
+        .with_clustering(clustering)
+        .with_topology(topology)
+        .with_positions(PUBLISHED);
     extract(field, &lattice_of(row), &settings, &Execution::default()).unwrap()
 }
 

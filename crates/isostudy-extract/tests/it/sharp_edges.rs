@@ -225,7 +225,7 @@ fn dual_contouring_keeps_what_others_round() {
         let mesh = method.extract(&mut Extractor::new(), source, &grid(spacing), 0.0, &THREADS).unwrap().mesh;
         measure(&mesh, &field, spacing).sharp_edges.mean / f64::from(spacing)
     };
-    let kept = of(Method::DualContouring(DualContouring { in_cell: false, ..DualContouring::default() }));
+    let kept = of(Method::DualContouring(DualContouring::default()));
     assert!(kept < 0.005, "{kept}");
     for method in [Method::Cubes(Cubes::default()), Method::SurfaceNets(SurfaceNets::default())] {
         let rounded = of(method);

@@ -19,7 +19,7 @@ const ONE: Execution = Execution { threads: 1 };
 const BOTH: [Flat; 2] = [Flat::Both, Flat::Neither];
 
 fn snapped(gamma: f32, flat: Flat) -> Method {
-    Method::SnapCubes(SnapCubes { gamma, flat })
+    Method::SnapCubes(SnapCubes::default().with_gamma(gamma).with_flat(flat))
 }
 
 fn grid(counts: [usize; 3]) -> BoxGrid {

@@ -24,7 +24,7 @@ fn run(
 }
 
 fn with(clustering: Clustering) -> ExtractSettings {
-    ExtractSettings { clustering, ..ExtractSettings::default() }
+    ExtractSettings::default().with_clustering(clustering)
 }
 
 /// Vertices less edges plus triangles, over what triangles use.
@@ -71,8 +71,7 @@ fn unit_sphere_in_its_box_is_closed_with_indexed_positions() {
 /// The accumulated positions put one pole inside by a last bit: a hole of eight sides.
 #[test]
 fn unit_sphere_in_its_box_is_open_with_accumulated_positions() {
-    let settings =
-        ExtractSettings { positions: Positions::Accumulated { chunks: 16 }, ..with(Clustering::None) };
+    let settings = with(Clustering::None).with_positions(Positions::Accumulated { chunks: 16 });
     let mesh = run(&Sphere::default(), Arrangement::BodyCentred, 0.04, settings).mesh;
     assert_eq!(euler_characteristic(&mesh), 1);
 }
@@ -83,7 +82,7 @@ fn published_edge_collapse_folds_the_sphere() {
     let positions = Positions::Accumulated { chunks: 16 };
     for (arrangement, characteristic) in ARRANGEMENTS.into_iter().zip([10, 148]) {
         let topology = Topology::Published;
-        let settings = ExtractSettings { positions, topology, ..with(Clustering::EdgeCollapse) };
+        let settings = with(Clustering::EdgeCollapse).with_positions(positions).with_topology(topology);
         let mesh = run(&Sphere::default(), arrangement, 0.04, settings).mesh;
         assert_eq!(euler_characteristic(&mesh), characteristic, "{arrangement:?}");
     }
@@ -134,7 +133,7 @@ fn clustering_keeps_the_surface_and_improves_the_triangles() {
 
 #[test]
 fn isovalue_shifts_the_radius() {
-    let settings = ExtractSettings { isovalue: 0.25, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_isovalue(0.25);
     let shifted = run(&Sphere { radius: 1.0 }, Arrangement::BodyCentred, 0.1, settings).mesh;
     let plain = run(&Sphere { radius: 0.75 }, Arrangement::BodyCentred, 0.1, ExtractSettings::default()).mesh;
     assert_eq!(shifted.triangles, plain.triangles);
@@ -147,7 +146,7 @@ fn threads_do_not_show() {
     for arrangement in ARRANGEMENTS {
         let lattice = Lattice::try_new(arrangement, bounds, 0.09).unwrap();
         for positions in [Positions::Indexed, Positions::Accumulated { chunks: 7 }] {
-            let settings = ExtractSettings { positions, ..ExtractSettings::default() };
+            let settings = ExtractSettings::default().with_positions(positions);
             let field = isostudy_field::Asteroid::default();
             let mesh = |threads| extract(&field, &lattice, &settings, &Execution { threads }).unwrap().mesh;
             let bits = |mesh: &TriangleMesh| -> Vec<[u32; 3]> {
@@ -173,7 +172,7 @@ fn stage_times_add_up() {
             (Clustering::EdgeCollapse, true),
             (Clustering::IntegratedCollapse, true),
         ] {
-            let settings = ExtractSettings { clustering, positions, ..ExtractSettings::default() };
+            let settings = ExtractSettings::default().with_clustering(clustering).with_positions(positions);
             let before = std::time::Instant::now();
             let times = run(&Sphere { radius: 0.9 }, Arrangement::BodyCentred, 0.05, settings).times;
             let around = before.elapsed();

@@ -125,11 +125,11 @@ fn methods() -> Vec<(Method, f32)> {
     let mut all = Vec::new();
     for patches in [false, true] {
         for smoothing in [0, 3] {
-            let nets = SurfaceNets { patches, smoothing, edge_clamp: 0.0 };
+            let nets = SurfaceNets::default().with_patches(patches).with_smoothing(smoothing);
             all.push((Method::SurfaceNets(nets), OF_MEANS));
         }
         for in_cell in [false, true] {
-            let planes = DualContouring { patches, in_cell, ..DualContouring::default() };
+            let planes = DualContouring::default().with_patches(patches).with_in_cell(in_cell);
             all.push((Method::DualContouring(planes), OF_MEETINGS));
         }
     }

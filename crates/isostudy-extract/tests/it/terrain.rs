@@ -22,7 +22,7 @@ fn mesh_of(field: &dyn StudyField, bounds: Bounds, arrangement: Arrangement, cel
     let lattice = Lattice::try_new(arrangement, bounds, bounds.spacing_of_cells(cells)).unwrap();
     let clustering =
         if arrangement.supports(Clustering::Integrated) { Clustering::Integrated } else { Clustering::None };
-    let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_clustering(clustering);
     extract(field, &lattice, &settings, &Execution { threads: 1 }).unwrap().mesh
 }
 
@@ -142,7 +142,7 @@ fn threads_and_clusterings_do_not_matter() {
     let field = of(TerrainCharacter::Caves, 3);
     let lattice = Lattice::try_new(Arrangement::BodyCentred, BOUNDS, 0.04).unwrap();
     for clustering in [Clustering::None, Clustering::Integrated] {
-        let settings = ExtractSettings { clustering, ..ExtractSettings::default() };
+        let settings = ExtractSettings::default().with_clustering(clustering);
         let [one, two] =
             [1, 2].map(|threads| extract(&field, &lattice, &settings, &Execution { threads }).unwrap().mesh);
         assert_eq!(one, two);

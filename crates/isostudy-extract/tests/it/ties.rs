@@ -15,7 +15,7 @@ const CLUSTERINGS: [Clustering; 4] =
     [Clustering::None, Clustering::Integrated, Clustering::EdgeCollapse, Clustering::IntegratedCollapse];
 
 fn mesh_of(field: &dyn StudyField, lattice: &Lattice, clustering: Clustering, isovalue: f32) -> TriangleMesh {
-    let settings = ExtractSettings { clustering, isovalue, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_clustering(clustering).with_isovalue(isovalue);
     extract(field, lattice, &settings, &Execution { threads: 1 }).unwrap().mesh
 }
 
@@ -77,12 +77,10 @@ fn volumes_of_whole_numbers_have_no_triangle_without_area() {
 fn the_published_topology_keeps_its_rule() {
     let field = whole_numbers(1, 0, 1.0, 0.0);
     let lattice = Lattice::try_new(Arrangement::BodyCentred, field.bounds(), 1.0).unwrap();
-    let settings = ExtractSettings {
-        clustering: Clustering::None,
-        topology: Topology::Published,
-        isovalue: 4.5,
-        ..ExtractSettings::default()
-    };
+    let settings = ExtractSettings::default()
+        .with_clustering(Clustering::None)
+        .with_topology(Topology::Published)
+        .with_isovalue(4.5);
     let mesh = extract(&field, &lattice, &settings, &Execution { threads: 1 }).unwrap().mesh;
     assert!(quality(&mesh).degenerate > 500);
 }

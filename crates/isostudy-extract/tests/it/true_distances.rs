@@ -188,15 +188,14 @@ fn grid(cells: u16) -> BoxGrid {
 }
 
 fn methods() -> [(&'static str, Method); 5] {
-    let tetrahedra =
-        Tetrahedra { clustering: Clustering::Integrated, ..Tetrahedra::new(Arrangement::BodyCentred) };
-    let relaxed = Tetrahedra { placement: Placement::Relaxed, ..tetrahedra };
+    let tetrahedra = Tetrahedra::new(Arrangement::BodyCentred).with_clustering(Clustering::Integrated);
+    let relaxed = tetrahedra.with_placement(Placement::Relaxed);
     [
         ("mc", Method::Cubes(Cubes::default())),
         ("nets", Method::SurfaceNets(SurfaceNets::default())),
         ("bi", Method::Tetrahedra(tetrahedra)),
         ("bi-relaxed", Method::Tetrahedra(relaxed)),
-        ("dc", Method::DualContouring(DualContouring { in_cell: false, ..DualContouring::default() })),
+        ("dc", Method::DualContouring(DualContouring::default())),
     ]
 }
 

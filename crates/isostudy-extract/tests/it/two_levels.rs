@@ -25,6 +25,17 @@ pub(crate) fn chunks(
     fine: u32,
     cells: i32,
 ) -> Vec<Chunk> {
+    chunks_by(fine, cells, |level, cells, neighbours| {
+        extractor.extract(field, level, cells, neighbours, Control::default()).unwrap()
+    })
+}
+
+/// The same by any means.
+pub(crate) fn chunks_by(
+    fine: u32,
+    cells: i32,
+    mut extract: impl FnMut(u32, CellBox, &Neighbours) -> Chunk,
+) -> Vec<Chunk> {
     let octant = |id: [i32; 3]| (0..3).fold(0, |set, axis| set | u32::from(id[axis] >= 0) << axis);
     let level_of = |id: [i32; 3]| 1 - (fine >> octant(id) & 1);
     (0..8)
@@ -40,7 +51,7 @@ pub(crate) fn chunks(
             .unwrap();
             let size = if level == 0 { 2 * cells } else { cells };
             let cells = CellBox { start: id.map(|i| i * size), end: id.map(|i| (i + 1) * size) };
-            extractor.extract(field, level, cells, &neighbours, Control::default()).unwrap()
+            extract(level, cells, &neighbours)
         })
         .collect()
 }
@@ -227,11 +238,21 @@ impl Octree {
         field: &dyn ScalarField,
         cells: u32,
     ) -> Vec<Chunk> {
-        let grid = *extractor.grid();
+        self.chunks_by(cells, |level, cells, neighbours| {
+            extractor.extract(field, level, cells, neighbours, Control::default()).unwrap()
+        })
+    }
+
+    /// The same by any means.
+    pub(crate) fn chunks_by(
+        &self,
+        cells: u32,
+        mut extract: impl FnMut(u32, CellBox, &Neighbours) -> Chunk,
+    ) -> Vec<Chunk> {
+        let grid = Grid::try_new([0.0; 3], 1.0).unwrap();
         let one = |&(level, id): &(u32, [i32; 3])| {
             let neighbours = Neighbours::try_new(level, |d| self.level_at((level, id), d)).unwrap();
-            let cells = grid.coarser(level).unwrap().chunk(id, cells);
-            extractor.extract(field, level, cells, &neighbours, Control::default()).unwrap()
+            extract(level, grid.chunk(id, cells), &neighbours)
         };
         self.leaves.iter().map(one).collect()
     }

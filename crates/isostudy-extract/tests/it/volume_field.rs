@@ -43,7 +43,7 @@ fn middle(field: &VolumeField) -> Vec3 {
 
 fn mesh_of(field: &dyn StudyField, bounds: Bounds, spacing: f32, isovalue: f32) -> TriangleMesh {
     let lattice = Lattice::try_new(Arrangement::BodyCentred, bounds, spacing).unwrap();
-    let settings = ExtractSettings { isovalue, ..ExtractSettings::default() };
+    let settings = ExtractSettings::default().with_isovalue(isovalue);
     extract(field, &lattice, &settings, &Execution::default()).unwrap().mesh
 }
 
@@ -220,7 +220,7 @@ fn a_mask_of_no_numbers_is_as_symmetric_as_its_samples() {
             }
             for arrangement in [Arrangement::SimpleCubic, Arrangement::BodyCentred] {
                 let lattice = Lattice::try_new(arrangement, field.bounds(), field.spacing()).unwrap();
-                let settings = ExtractSettings { isovalue: 50.5, ..ExtractSettings::default() };
+                let settings = ExtractSettings::default().with_isovalue(50.5);
                 let mesh = extract(&field, &lattice, &settings, &Execution::default()).unwrap().mesh;
                 assert!(topology(&mesh).is_closed_manifold());
                 let Bounds { min, max } = mesh.bounds().unwrap();

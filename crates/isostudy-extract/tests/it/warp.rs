@@ -229,7 +229,7 @@ fn smooth_surfaces_keep_their_topology_and_lose_no_more_than_a_net() {
         // Every vertex is a crossing, so it is as near to the sphere as those are.
         let away = mesh.positions.iter().map(|p| (p.length() - radius).abs()).fold(0.0, f32::max);
         assert!(away < 0.0005, "{away}");
-        let relaxed = ExtractSettings { placement: Placement::Relaxed, ..WARP };
+        let relaxed = WARP.with_placement(Placement::Relaxed);
         let moved = extract(&sphere, &lattice, &relaxed, &ONE).unwrap().mesh;
         assert_eq!(moved.triangles, mesh.triangles);
         let ratio = |mesh: &TriangleMesh| isostudy_mesh::quality::quality(mesh).radius_ratio.mean;
@@ -244,16 +244,16 @@ fn chunks_weld_to_the_whole() {
         for placement in [Placement::MeanOfCrossings, Placement::Relaxed] {
             let volume = Volume::random(Arrangement::BodyCentred, 11, family, seed);
             let volume = if seed == 0 { volume.closed() } else { volume };
-            let settings = ExtractSettings { placement, ..WARP };
+            let settings = WARP.with_placement(placement);
             if placement == Placement::Relaxed && !matches!(family, Family::Spheres | Family::Gyroid) {
                 continue;
             }
             let whole = mesh_of(&volume, &settings);
-            let method = Method::Tetrahedra(Tetrahedra {
-                clustering: Clustering::Warp,
-                placement,
-                ..Tetrahedra::new(Arrangement::BodyCentred)
-            });
+            let method = Method::Tetrahedra(
+                Tetrahedra::new(Arrangement::BodyCentred)
+                    .with_clustering(Clustering::Warp)
+                    .with_placement(placement),
+            );
             let grid = BoxGrid::from(&volume.lattice());
             let mut chunks = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default()).unwrap();
             let boxes: Vec<CellBox> = chunks.grid(4).collect();
@@ -280,7 +280,7 @@ fn threads_and_buffers_change_nothing() {
     assert!(
         one.counts.vertices as usize == one.mesh.positions.len() && one.times.clustering > Default::default()
     );
-    let unclustered = ExtractSettings { clustering: Clustering::None, ..WARP };
+    let unclustered = WARP.with_clustering(Clustering::None);
     let all = extract(asteroid, &lattice, &unclustered, &ONE).unwrap().counts;
     assert_eq!(one.counts.triangles + one.counts.discarded_triangles, all.triangles);
     assert_eq!(one.counts.crossings, all.crossings);
@@ -305,13 +305,10 @@ fn what_a_warp_does_not_know_is_refused() {
         );
     }
     for (settings, with) in [
-        (ExtractSettings { topology: Topology::Published, ..WARP }, "published topology"),
-        (
-            ExtractSettings { positions: Positions::Accumulated { chunks: 1 }, ..WARP },
-            "accumulated positions",
-        ),
-        (ExtractSettings { placement: Placement::CurvatureWeighted, ..WARP }, "curvature-weighted placement"),
-        (ExtractSettings { refine_crossings: true, ..WARP }, "refined crossings"),
+        (WARP.with_topology(Topology::Published), "published topology"),
+        (WARP.with_positions(Positions::Accumulated { chunks: 1 }), "accumulated positions"),
+        (WARP.with_placement(Placement::CurvatureWeighted), "curvature-weighted placement"),
+        (WARP.with_refine_crossings(true), "refined crossings"),
     ] {
         assert_eq!(error(Arrangement::BodyCentred, settings), ExtractError::Warp { with });
     }

@@ -2,19 +2,11 @@
 
 use crate::fields::Volume;
 use isostudy_extract::by_lattice::{ExtractSettings, extract};
-use isostudy_extract::{Clustering, Execution, Placement, Positions, Topology};
+use isostudy_extract::{Clustering, Execution};
 use isostudy_mesh::TriangleMesh;
 
 pub(crate) const ONE: Execution = Execution { threads: 1 };
-pub(crate) const WARP: ExtractSettings = ExtractSettings {
-    isovalue: 0.0,
-    clustering: Clustering::Warp,
-    topology: Topology::Guarded,
-    positions: Positions::Indexed,
-    placement: Placement::MeanOfCrossings,
-    refine_crossings: false,
-    edge_clamp: 0.0,
-};
+pub(crate) const WARP: ExtractSettings = ExtractSettings::new().with_clustering(Clustering::Warp);
 /// Of edges between two centres or two corners, and of the others.
 pub(crate) const ALPHA: [f64; 2] = [0.24999, 0.359];
 

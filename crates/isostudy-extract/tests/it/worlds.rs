@@ -17,7 +17,7 @@ fn method(arrangement: Arrangement, placement: Placement) -> Method {
         Arrangement::BodyCentred | Arrangement::SimpleCubic => Clustering::Integrated,
         Arrangement::FiveTetrahedra | Arrangement::FaceCentred => Clustering::None,
     };
-    Method::Tetrahedra(Tetrahedra { clustering, placement, ..Tetrahedra::new(arrangement) })
+    Method::Tetrahedra(Tetrahedra::new(arrangement).with_clustering(clustering).with_placement(placement))
 }
 
 fn extractor(grid: &Grid, method: &Method) -> ChunkExtractor {
@@ -360,8 +360,7 @@ fn what_has_no_place_is_refused() {
         matches!(error, ChunkError::Extract(ExtractError::Grid(LatticeError::OutOfRange { .. }))),
         "{error}"
     );
-    let collapse =
-        Tetrahedra { clustering: Clustering::EdgeCollapse, ..Tetrahedra::new(Arrangement::SimpleCubic) };
+    let collapse = Tetrahedra::new(Arrangement::SimpleCubic).with_clustering(Clustering::EdgeCollapse);
     let error = ChunkExtractor::try_new(&grid, &Method::Tetrahedra(collapse), &ChunkSettings::default());
     assert_eq!(error.err(), Some(ChunkError::EndlessCollapse));
 }

@@ -163,7 +163,7 @@ impl Arguments {
                 Arrangement::BodyCentred | Arrangement::SimpleCubic => Clustering::Integrated,
                 Arrangement::FiveTetrahedra | Arrangement::FaceCentred => Clustering::EdgeCollapse,
             });
-            Some(Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(arrangement) }))
+            Some(Method::Tetrahedra(Tetrahedra::new(arrangement).with_clustering(clustering)))
         };
         let chosen = self.method.or(self.recipe).or_else(tetrahedra);
         chosen.unwrap_or_else(|| chosen_method::preset(DEFAULT).expect("a preset"))

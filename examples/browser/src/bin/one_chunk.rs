@@ -31,7 +31,7 @@ fn main() -> ExitCode {
 fn volume(arrangement: Arrangement, clustering: Clustering) -> Result<f64, Box<dyn std::error::Error>> {
     let bounds = Bounds { min: Vec3::splat(-1.25), max: Vec3::splat(1.25) };
     let grid = BoxGrid { bounds, spacing: 0.078125 };
-    let method = Method::Tetrahedra(Tetrahedra { clustering, ..Tetrahedra::new(arrangement) });
+    let method = Method::Tetrahedra(Tetrahedra::new(arrangement).with_clustering(clustering));
     let mut extractor = ChunkExtractor::in_box(&grid, &method, &ChunkSettings::default())?;
     let mut chunks = Vec::new();
     for cells in extractor.grid(16) {

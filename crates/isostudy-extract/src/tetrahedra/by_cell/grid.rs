@@ -152,7 +152,9 @@ impl CutGrid {
             return regular;
         }
         let step = self.cut.steps[direction];
-        let there = [0, 1, 2].map(|axis| place[axis].strict_add_signed(isize::from(step[axis])));
+        let there = [0, 1, 2].map(|axis| {
+            place[axis].checked_add_signed(isize::from(step[axis])).expect("a point of the lattice")
+        });
         self.position(there) - self.position(place)
     }
 

@@ -28,7 +28,8 @@ fn request<'a>(
     execution: &'a Execution,
     most_vertices: u32,
 ) -> Request<'a> {
-    Request { source, lattice, settings, control: execution.into(), most_vertices, start: Moment::now() }
+    let (control, start) = (execution.into(), Moment::now());
+    Request { source, lattice, settings, control, most_vertices, with_normals: true, start }
 }
 
 fn tetrahedra_at(cut: &Cut, cell: [i8; 3]) -> impl Iterator<Item = [Step; 4]> + '_ {

@@ -30,7 +30,9 @@ impl Sides {
     pub(crate) fn mark_active(&self, first: usize, steps: &[isize; DIRECTIONS], active: &mut [u8]) {
         let row = |start: usize| &self.bytes[start..start + active.len()];
         let here = row(self.padding + first);
-        let rows = steps.map(|step| row((self.padding + first).strict_add_signed(step)));
+        let rows = steps.map(|step| {
+            row((self.padding + first).checked_add_signed(step).expect("a point of the lattice"))
+        });
         for (i, mark) in active.iter_mut().enumerate() {
             *mark = rows.iter().fold(0, |mark, row| mark | (row[i] ^ here[i]));
         }

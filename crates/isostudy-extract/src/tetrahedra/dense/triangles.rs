@@ -42,8 +42,9 @@ pub(crate) fn triangulate(
                         result.tetrahedra_evaluated += 1;
                         let case = CASES[corners_inside(tetrahedron, inside, crossing)];
                         if case != Case::Empty {
-                            let points =
-                                tetrahedron.corners.map(|d| base.strict_add_signed(steps[d as usize]));
+                            let points = tetrahedron.corners.map(|d| {
+                                base.checked_add_signed(steps[d as usize]).expect("a point of the lattice")
+                            });
                             let points = [base, points[0], points[1], points[2]];
                             result.add(case, |edge| {
                                 let edge = &tetrahedron.edges[edge as usize];

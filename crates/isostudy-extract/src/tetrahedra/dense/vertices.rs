@@ -121,7 +121,7 @@ impl<'a> VertexStage<'a> {
         let mut near = 0;
         let mut ratios = [0.0; DIRECTIONS];
         for direction in members(incident) {
-            let neighbour = point.strict_add_signed(steps[direction]);
+            let neighbour = point.checked_add_signed(steps[direction]).expect("a point of the lattice");
             if self.sides.is_inside(neighbour) == inside {
                 continue;
             }
@@ -148,7 +148,7 @@ impl<'a> VertexStage<'a> {
         if let Some(placer) = self.placer {
             let mut neighbours = [f32::NAN; DIRECTIONS];
             for direction in members(incident) {
-                let neighbour = point.strict_add_signed(steps[direction]);
+                let neighbour = point.checked_add_signed(steps[direction]).expect("a point of the lattice");
                 neighbours[direction] = self.samples[neighbour] - self.settings.isovalue;
             }
             let around = Surroundings { position, difference: -difference, neighbours, ways };

@@ -238,8 +238,8 @@ fn placements_do_not_show(made: &Made) -> Result<(), Broken> {
     let Some((sampled, mesh)) = &made.of_field else { return Ok(()) };
     let placement = Placement::Relaxed;
     let other = match *made.method {
-        Method::Tetrahedra(tetrahedra) => Method::Tetrahedra(Tetrahedra { placement, ..tetrahedra }),
-        Method::Cubes(cubes) => Method::Cubes(Cubes { placement, ..cubes }),
+        Method::Tetrahedra(tetrahedra) => Method::Tetrahedra(tetrahedra.with_placement(placement)),
+        Method::Cubes(cubes) => Method::Cubes(cubes.with_placement(placement)),
         _ => return Err(Broken::of_field("the method has no placements".to_owned())),
     };
     let other = of_field(&other, sampled, made.volume.isovalue, &ONE).map_err(Broken::of_field)?;

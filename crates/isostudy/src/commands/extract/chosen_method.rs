@@ -137,8 +137,7 @@ mod tests {
     #[test]
     fn a_recipe_has_the_defaults_of_the_library() {
         let text = "{ kind = \"tetrahedra\", arrangement = \"body-centred\", placement = \"relaxed\" }";
-        let relaxed =
-            Tetrahedra { placement: Placement::Relaxed, ..Tetrahedra::new(Arrangement::BodyCentred) };
+        let relaxed = Tetrahedra::new(Arrangement::BodyCentred).with_placement(Placement::Relaxed);
         assert_eq!(recipe(text), Ok(Method::Tetrahedra(relaxed)));
         assert_eq!(preset("bi-relaxed"), recipe(text));
     }
@@ -154,7 +153,7 @@ mod tests {
                 Ok(preset.method)
             );
         }
-        let own = Tetrahedra { refine_crossings: true, ..Tetrahedra::new(Arrangement::SimpleCubic) };
+        let own = Tetrahedra::new(Arrangement::SimpleCubic).with_refine_crossings(true);
         let described = Described::of(Method::Tetrahedra(own));
         assert_eq!((described.id, described.label), (None, None));
         assert_eq!(recipe(&described.to_text().unwrap()), Ok(Method::Tetrahedra(own)));

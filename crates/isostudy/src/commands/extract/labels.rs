@@ -34,7 +34,10 @@ pub(super) fn extract(arguments: &Arguments, path: &Path) -> Result<Outcome> {
     let name = || path.display().to_string();
     let smoothing = smoothing(arguments.method.or(arguments.recipe))?;
     let only = only(&arguments.only)?;
-    let settings = LabelSettings { only: &only, smoothing, close: arguments.source.options().close };
+    let settings = LabelSettings::default()
+        .with_only(&only)
+        .with_smoothing(smoothing)
+        .with_close(arguments.source.options().close);
     let (limit, before) = (arguments.source.limit(), Held::now());
     let unread = isostudy_volume::open(path)?;
     let held = OfVolume::samples(&unread).with("the labels", unread.memory_bytes());
@@ -73,7 +76,7 @@ pub(super) fn extract(arguments: &Arguments, path: &Path) -> Result<Outcome> {
 fn smoothing(method: Option<Method>) -> Result<u32> {
     let why = match method {
         None => return Ok(0),
-        Some(Method::SurfaceNets(SurfaceNets { patches: false, smoothing, edge_clamp: 0.0 })) => {
+        Some(Method::SurfaceNets(SurfaceNets { patches: false, smoothing, edge_clamp: 0.0, .. })) => {
             return Ok(smoothing);
         }
         Some(Method::SurfaceNets(SurfaceNets { patches: true, .. })) => {

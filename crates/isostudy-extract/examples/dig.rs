@@ -1,0 +1,1 @@
+../../../examples/dig.rs

@@ -1,0 +1,1 @@
+../../../examples/endless.rs
