@@ -8,7 +8,7 @@ ifndef SEED
 SEED := $(shell od -An -N4 -tu4 /dev/urandom | tr -d ' ')
 endif
 
-.PHONY: help study test test-long attacks quick terrain families bench bench-sweep figures check bunny three viewer-library cgal clean
+.PHONY: help study test test-long attacks quick terrain families bench bench-sweep figures check bunny three viewer-library cgal wheel clean
 
 help: ## list these entries
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 11
@@ -76,6 +76,9 @@ check: ## formatting, lints, licences, the English of README and docs, and that 
 	scripts/draw-house.py --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
 	@if command -v cargo-deny >/dev/null; then cargo deny --locked check bans licenses sources; else echo "CARGO-DENY IS NOT INSTALLED: licences and bans were not checked" >&2; fi
+
+wheel: ## build the Python wheel into target/wheels/, and run its tests and its notebook in a fresh environment
+	scripts/test-wheel.sh
 
 bunny: ## fetch and verify the Stanford bunny into cache/ (BUNNY=path takes a file of yours)
 	@scripts/fetch-bunny.sh $(BUNNY) >/dev/null
