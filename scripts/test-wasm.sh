@@ -16,3 +16,22 @@ folder=$(cargo metadata --format-version 1 --no-deps --locked | node -pe 'JSON.p
 cargo build --release --locked --target "$target" -p isostudy-browser --lib --bins
 node scripts/run-wasm.mjs "$folder/$target/release/one_chunk.wasm"
 node scripts/test-terrain.mjs "$folder/$target/release/isostudy_browser.wasm"
+
+# A module for a page: how many bytes it may have, and how many after gzip, in units of 1000. One family of methods, and all of them.
+small() {
+  local name=$1 most_kb=$2 most_gzipped_kb=$3
+  shift 3
+  cargo build --quiet --release --manifest-path examples/small/Cargo.toml --target "$target" --target-dir "$folder/small-$name" "$@"
+  local module=$folder/small-$name/$target/release/isostudy_small.wasm
+  local bytes gzipped
+  bytes=$(wc -c <"$module")
+  gzipped=$(gzip -9 -c "$module" | wc -c)
+  echo "wasm with $name: $bytes bytes, $gzipped gzipped; at most ${most_kb}000 and ${most_gzipped_kb}000"
+  if ((bytes > 1000 * most_kb || gzipped > 1000 * most_gzipped_kb)); then
+    echo "the module with $name is too large" >&2
+    exit 1
+  fi
+  node scripts/test-small.mjs "$module"
+}
+small surface-nets 120 53
+small all-families 600 250 --features all-families
