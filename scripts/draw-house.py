@@ -49,6 +49,7 @@ KNOWS = {
     "isostudy-statistics": set(),
     "isostudy-trilinear": {"isostudy-mesh"},
     "isostudy-finish": {"isostudy-mesh"},
+    "isostudy-ffi": {"isostudy-extract"},
 }
 # Crates that the first one must not reach, whatever the way.
 NEVER = {
