@@ -26,7 +26,7 @@ unpublished = [
     for needed in packages[name]["dependencies"]
     if needed.get("path") and needed["name"] not in library
 ]
-sys.exit("\n".join(missing + unpublished))
+sys.exit("\n".join(missing + unpublished) or None)
 ' "${library[*]}" "${wanted[*]}"
 
 selected=("${library[@]/#/--package=}")
