@@ -29,7 +29,7 @@ ${CC:-cc} -std=c11 -O1 -g -Wall -Wextra -Wpedantic -Werror -I "$crate/include" "
   -L "$target/release" -Wl,-rpath,"$target/release" -lisostudy_ffi -lm -o "$work/world"
 run=()
 if command -v valgrind >/dev/null; then
-  run=(valgrind --quiet --error-exitcode=1 --leak-check=full --errors-for-leak-kinds=definite)
+  run=(valgrind --quiet --error-exitcode=1 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite)
 else
   echo "VALGRIND IS NOT INSTALLED: reads and writes of memory were not checked" >&2
 fi

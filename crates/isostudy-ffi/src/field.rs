@@ -4,11 +4,11 @@ use std::ffi::c_void;
 
 use isostudy_extract::{Aabb, Bound, ScalarField};
 
-/// The function that gives a value at a point: above the isovalue is inside.
-pub(crate) type Sample = unsafe extern "C" fn(user: *mut c_void, x: f32, y: f32, z: f32) -> f32;
+/// As [`IsostudyField::sample`], where cbindgen sees no name.
+type Sample = unsafe extern "C" fn(user: *mut c_void, x: f32, y: f32, z: f32) -> f32;
 
-/// Says the least and the greatest value in a box, and returns true; or returns false where it is not known.
-pub(crate) type Range = unsafe extern "C" fn(
+/// As [`IsostudyField::range`].
+type Range = unsafe extern "C" fn(
     user: *mut c_void,
     min: *const f32,
     max: *const f32,
@@ -21,10 +21,18 @@ pub(crate) type Range = unsafe extern "C" fn(
 #[derive(Debug, Clone, Copy)]
 pub struct IsostudyField {
     /// The value at a point: above the isovalue is inside. The same point has the same value each time.
-    pub sample: Option<Sample>,
-    /// The least and the greatest value in the box from `min` to `max`, three numbers each; or null. It saves most calls of `sample`. A
-    /// range that does not hold makes holes.
-    pub range: Option<Range>,
+    pub sample: Option<unsafe extern "C" fn(user: *mut c_void, x: f32, y: f32, z: f32) -> f32>,
+    /// The least and the greatest value in the box from `min` to `max`, three numbers each, and true; or false where they are not known. It
+    /// may be null. It saves most calls of `sample`. A range that does not hold makes holes.
+    pub range: Option<
+        unsafe extern "C" fn(
+            user: *mut c_void,
+            min: *const f32,
+            max: *const f32,
+            least: *mut f32,
+            greatest: *mut f32,
+        ) -> bool,
+    >,
     /// Given to both functions.
     pub user: *mut c_void,
 }

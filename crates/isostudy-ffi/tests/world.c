@@ -169,7 +169,8 @@ static void holes_change_what_is_touched(const double *origin, ball_t *of)
         CHECK(open_edges() == 0);
         volume[dug] = volume_6 / 6;
     }
-    CHECK(fabs(volume[0] - volume[1] - 4 / 3.0 * PI) < 0.1);
+    /* Four cells to its radius: chords lose a few percent. */
+    CHECK(fabs(volume[0] - volume[1] - 4 / 3.0 * PI) < 0.05 * 4 / 3.0 * PI);
     isostudy_chunks_free(chunks);
 }
 
