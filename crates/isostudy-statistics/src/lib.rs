@@ -15,14 +15,18 @@
 //! - A model's independence standard errors ([`WorthFit::covariance`]) are too small for clustered answers; they are there
 //!   to be compared with other programs.
 
+mod attribute;
 mod ballot;
 pub mod bootstrap;
 mod closeness;
+mod clustered;
 mod equivalence;
 mod exchange;
+mod first_choice;
 mod fit;
 mod friedman;
 mod goodness;
+mod graded;
 mod heterogeneity;
 pub mod interval;
 mod kendall;
@@ -35,8 +39,10 @@ mod order_statistics;
 mod outlying;
 mod pairs;
 mod participants;
+mod person_model;
 mod power_law;
 mod rank_correlation;
+mod ratings;
 mod regression;
 mod sandwich;
 mod scale;
@@ -55,13 +61,17 @@ mod tipping;
 #[cfg(test)]
 mod golden;
 
+pub use attribute::{Attribute, AttributeTest, ORDERS, attribute_test};
 pub use ballot::{Answer, Ballot, DeclaredBallot, Outcome, Preference, ShownBallot};
 pub use closeness::{Closeness, closeness};
+pub use clustered::Coefficient;
 pub use equivalence::{Equivalence, MARGIN, equivalence};
 pub use exchange::{Split, exchange};
+pub use first_choice::{Choice, FirstChoice, first_choice};
 pub use fit::{FitError, Penalty, WorthFit, fit, fit_given_side, has_spread};
 pub use friedman::{ChiSquareTest, friedman};
 pub use goodness::{FittedPair, Goodness, goodness};
+pub use graded::{GradedBallot, GradedFit, Link, MOST_STEPS, graded};
 pub use heterogeneity::{Heterogeneity, heterogeneity};
 pub use kendall::{Agreement, Triads, agreement, outcome_counts, triads, zeta, zetas};
 pub use krippendorff::{Alpha, Metric, alpha, alpha_with_interval};
@@ -72,9 +82,11 @@ pub use order_statistics::{Median, median};
 pub use outlying::{Outlying, WithMajority, outlying_respondents};
 pub use pairs::{Pair, Pairs};
 pub use participants::Participants;
+pub use person_model::{PersonModel, person_model};
 pub use power_law::{PowerLaw, power_law};
 pub use rank_correlation::spearman;
-pub use regression::{Coefficient, Regression, regression, regression_given_side};
+pub use ratings::{Rating, RatingFit, ratings};
+pub use regression::{Regression, regression, regression_given_side};
 pub use sandwich::clustered_covariance;
 pub use scale::{Difference, NoOmnibus, Omnibus, Scale, Spread, fit_on_one_scale, jod, preferred, scale};
 pub use score::{FEWEST_RESAMPLED, ScoreGroup, ScoreTest};

@@ -112,7 +112,7 @@ fn by_slope(step: &[f64], here: &Curvature, after: &dyn Fn(f64) -> Curvature) ->
 }
 
 /// Cholesky's lower factor of a symmetric positive definite matrix; `None` if it is not one.
-fn factor(matrix: &Matrix) -> Option<Matrix> {
+pub(super) fn factor(matrix: &Matrix) -> Option<Matrix> {
     let n = matrix.len();
     let mut factor = vec![vec![0.0; n]; n];
     for i in 0..n {

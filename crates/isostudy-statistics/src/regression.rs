@@ -6,9 +6,10 @@
 //! of a question changes nothing. Without a tie among the answers it is the logistic model alone.
 
 use super::ballot::{Answer, ShownBallot};
+use super::clustered::{Coefficient, sandwich};
 use super::fit::FitError;
 use super::model::add_log_linear;
-use super::newton::{Curvature, Matrix, inverse, maximise, times};
+use super::newton::{Curvature, Matrix, inverse, maximise};
 use crate::interval::{Interval, LEVEL};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
@@ -124,8 +125,8 @@ fn fit_with<A: Answer>(
         ln_nu: tie.map(|tie| at[tie]),
         log_likelihood: likelihood(&at).value,
         covariance: in_own_units(maximum.covariance),
-        clustered: sandwich(&bread, sums.values()).map(in_own_units),
         participants: sums.len(),
+        clustered: sandwich(&bread, sums.into_values()).map(in_own_units),
     })
 }
 
@@ -134,34 +135,6 @@ fn units<'a>(covariates: impl Iterator<Item = &'a Vec<f64>>, width: usize) -> Ve
     let mut largest = vec![0.0_f64; width];
     covariates.for_each(|x| largest.iter_mut().zip(x).for_each(|(most, x)| *most = most.max(x.abs())));
     largest.into_iter().map(|most| if most > 0.0 { most.log2().ceil().exp2() } else { 1.0 }).collect()
-}
-
-/// m/(m-1) B (sum of s s') B over m gradients.
-fn sandwich<'a>(bread: &Matrix, scores: impl ExactSizeIterator<Item = &'a Vec<f64>>) -> Option<Matrix> {
-    let (m, size) = (scores.len() as f64, bread.len());
-    let mut meat = vec![vec![0.0; size]; size];
-    for score in scores {
-        let influence = times(bread, score);
-        for i in 0..size {
-            for j in 0..size {
-                meat[i][j] += m / (m - 1.0) * influence[i] * influence[j];
-            }
-        }
-    }
-    (m > 1.0).then_some(meat)
-}
-
-/// A coefficient with what is known of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coefficient {
-    /// The estimate.
-    pub estimate: f64,
-    /// Standard error, participants as clusters.
-    pub se: f64,
-    /// t interval at [`LEVEL`] on m - 1 degrees of freedom.
-    pub interval: Interval,
-    /// Two-sided p of t = estimate / se on m - 1 degrees of freedom.
-    pub p: f64,
 }
 
 impl Regression {

@@ -103,6 +103,18 @@ impl ScoreTest {
         Self { apart, ..Self::of_scores(people.iter().map(|strata| difference(strata)), None, 2.0) }
     }
 
+    /// Tests a difference of ratings: they are `(participant, stratum, whether of the second item, rating)`, in whole steps, of which the
+    /// scale has `reach` from its least to its largest. Means over strata, such as objects, as in
+    /// [`of_difference`](Self::of_difference): only a person's own ratings are compared, so people may use the scale as they like.
+    pub fn of_rating_difference(
+        ratings: impl IntoIterator<Item = (usize, usize, bool, i64)>,
+        reach: f64,
+    ) -> Self {
+        let of = Self::of_difference(ratings);
+        let interval = of_mean_score(&of.scores(), reach);
+        Self { reach, interval, ..of }
+    }
+
     /// Scores by participant, as numerator and denominator.
     fn of_scores(
         scores: impl Iterator<Item = Option<(i64, i64)>>,

@@ -45,6 +45,20 @@ fn two_items_by_an_exact_integral() {
     close(found.p.ln(), 3.394_018_9e-5_f64.ln(), 0.02);
 }
 
+/// R 4.2.2, lme4 1.1-31: glmer(cbind(w, l) ~ 1 + (1 | p), family = binomial, nAGQ = 1) of the decided answers of the same people,
+/// confint(profile(.)), and twice the gain on glm. Laplace's approximation there too, so only the step of the search is between them.
+#[test]
+fn two_items_without_ties_as_lme4_has_them() {
+    let decided: Vec<[usize; 3]> = TEN.iter().map(|&[first, _, second]| [first, 0, second]).collect();
+    let found = heterogeneity(&Participants::of(2, &ballots(&decided))).unwrap();
+    let close = |got: f64, want: f64| assert!((got - want).abs() < 0.011, "{got} instead of {want}");
+    close(found.sd, 1.264_980_608);
+    close(found.interval.low, 0.610_358_343);
+    close(found.interval.high, 2.540_112_102);
+    // 0.5 * pchisq(14.06601465, 1, lower.tail = FALSE)
+    assert!((found.p / 8.825_220_7e-5 - 1.0).abs() < 0.01, "{}", found.p);
+}
+
 #[test]
 fn a_planted_spread_is_found() {
     for (sd, off) in [(0.0, 0.3), (0.5, 0.2), (1.0, 0.2), (2.0, 0.35)] {
