@@ -67,6 +67,8 @@ impl Study {
             }
             _ => None,
         };
+        let people = file.analysis.people.as_ref();
+        let people = people.map(|written| checker.existing("analysis.people", written)).transpose()?;
         if file.responses.as_ref().is_some_and(|responses| !responses.pairs.is_empty()) {
             let limit = "the study's comparisons are its questions";
             return checker.refuse("responses.pairs", "[...]", limit);
@@ -90,6 +92,7 @@ impl Study {
             groups,
             target,
             responses,
+            people,
             published,
             file,
         };

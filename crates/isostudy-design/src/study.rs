@@ -34,6 +34,8 @@ pub struct Study {
     pub target: CpuProfile,
     /// The responses, resolved; the file is there.
     pub responses: Option<PathBuf>,
+    /// What is known of people, resolved; the file is there.
+    pub people: Option<PathBuf>,
     /// Published numbers; empty for a new study.
     pub published: Published,
 }

@@ -27,6 +27,7 @@ mod formats;
 mod mapping;
 mod name;
 mod natural;
+mod person_columns;
 mod plan;
 mod read;
 mod report;
@@ -45,12 +46,13 @@ pub use format::Format;
 pub use formats::long::{LONG_COLUMNS, LONG_NEEDED};
 pub use mapping::{Duplicates, Mapping, MappingError, Unknown};
 pub use name::LONGEST_NAME;
+pub use person_columns::{PersonColumns, PersonColumnsError, parse_person_columns, read_person_columns};
 pub use plan::{Plan, PlannedPair};
 pub use read::{LARGEST_FILE, Reading, parse, read};
 pub use report::{Kind, Remark, Report};
 pub use screen::{SCREEN_COLUMNS, Screen, ScreenId};
 pub use sides::SidesSource;
-pub use value::{Answer, Participant, Question, Responses, StimulusId, UnknownStimuli};
+pub use value::{Answer, Participant, PersonColumn, Question, Responses, StimulusId, UnknownStimuli};
 pub use words::{Words, normalise};
 pub use write::{
     LONG_WRITTEN, LONG_WRITTEN_WITH_SCREENS, Ties, WriteError, Written, write_arenakit, write_long,

@@ -37,6 +37,8 @@ pub struct Responses {
     pub stimuli: Vec<String>,
     /// On what answers were given, where the file says it; neighbours on one screen share one.
     pub screens: Vec<Screen>,
+    /// What is said of people beside their answers, where a study asks for it; reading answers leaves it empty.
+    pub people: Vec<PersonColumn>,
     /// Answers whose participant the file does not name. Each of them has a participant of its own.
     pub without_participant: u64,
     /// Answers whose code name the study does not have; `None` if it has all, if there is no study, or if it has none itself.
@@ -62,6 +64,15 @@ pub struct Participant {
     pub id: String,
     /// Which form of the questionnaire it was, if there are several.
     pub form: Option<String>,
+}
+
+/// A column of a file by participant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PersonColumn {
+    /// Its title.
+    pub name: String,
+    /// What it says of each participant, in their order; `None` where it says nothing.
+    pub values: Vec<Option<String>>,
 }
 
 /// One pair that was asked about.

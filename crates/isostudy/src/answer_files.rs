@@ -6,7 +6,9 @@ use anyhow::{Context, Result, bail};
 use isostudy_design::Study;
 use isostudy_design::config::ResponsesSection;
 use isostudy_report::PARQUET_MARK;
-use isostudy_responses::{Kind, LARGEST_FILE, LONG_COLUMNS, Mapping, Plan, Reading, Report, normalise};
+use isostudy_responses::{
+    Kind, LARGEST_FILE, LONG_COLUMNS, Mapping, Plan, Reading, Report, normalise, read_person_columns,
+};
 use std::io::Read;
 use std::path::Path;
 
@@ -29,7 +31,22 @@ pub(crate) fn of_study(study: &Study) -> Result<Option<Reading>> {
         );
     }
     input::regular(path)?;
-    Ok(Some(read(path, Some(&Plan::of_study(study)), &mapping)?))
+    let mut reading = read(path, Some(&Plan::of_study(study)), &mapping)?;
+    let wanted = study.file.analysis.person_columns();
+    if !wanted.is_empty() {
+        let of = study.people.as_ref().unwrap_or(path);
+        let responses = &mut reading.responses;
+        let found = read_person_columns(of, &wanted, &responses.participants)?;
+        let (known, all) = (found.known, responses.participants.len());
+        let others = match found.others {
+            0 => String::new(),
+            others => format!("; {others} in it did not answer"),
+        };
+        let columns = counted(wanted.len() as u64, "column");
+        tell!("{}: {columns} about {known} of the {all} who answered{others}", of.display());
+        responses.people = found.columns;
+    }
+    Ok(Some(reading))
 }
 
 /// Answers without a study.

@@ -44,6 +44,9 @@ impl Exclusion {
     }
 }
 
+/// Columns of people at most: each is a test, for which all are corrected.
+const MOST_COLUMNS: usize = 20;
+
 /// What of the analysis is a choice, and when it was made. Every key has a default.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -66,6 +69,15 @@ pub struct AnalysisSection {
     pub reference: Option<String>,
     /// The rules whose breakers the main analysis leaves out; empty if everybody counts.
     pub exclude: Vec<Exclusion>,
+    /// A CSV file with what is known of people, by a column `participant`; otherwise that is in the file of answers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub people: Option<String>,
+    /// Columns that divide people into groups, such as `expertise`, whose worths are compared.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub subgroups: Vec<String>,
+    /// Columns with a number for each person, such as `age`, with which worths may go.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub covariates: Vec<String>,
 }
 
 impl Default for AnalysisSection {
@@ -80,6 +92,9 @@ impl Default for AnalysisSection {
             primary: Vec::new(),
             reference: None,
             exclude: Vec::new(),
+            people: None,
+            subgroups: Vec::new(),
+            covariates: Vec::new(),
         }
     }
 }
@@ -150,7 +165,41 @@ impl AnalysisSection {
         }
         c.distinct(|i| format!("analysis.primary[{i}]"), &self.primary)?;
         let rules: Vec<String> = self.exclude.iter().map(|rule| rule.code().into()).collect();
-        c.distinct(|i| format!("analysis.exclude[{i}]"), &rules)
+        c.distinct(|i| format!("analysis.exclude[{i}]"), &rules)?;
+        self.check_people(c)
+    }
+
+    /// Columns of people, subgroups first.
+    pub fn person_columns(&self) -> Vec<String> {
+        self.subgroups.iter().chain(&self.covariates).cloned().collect()
+    }
+
+    fn check_people(&self, c: &Checker<'_>) -> Result<(), ConfigError> {
+        let key = |i: usize| match i.checked_sub(self.subgroups.len()) {
+            None => format!("analysis.subgroups[{i}]"),
+            Some(i) => format!("analysis.covariates[{i}]"),
+        };
+        let names = self.person_columns();
+        for (i, name) in names.iter().enumerate() {
+            let letters = name.chars().count();
+            if name.trim() != name || !(1..=64).contains(&letters) || name.chars().any(char::is_control) {
+                let limit = "must be the title of a column: 1 to 64 letters, with no space at its ends";
+                return c.refuse(key(i), format!("{name:?}"), limit);
+            }
+        }
+        if names.len() > MOST_COLUMNS {
+            let limit = format!("at most {MOST_COLUMNS} columns in subgroups and covariates together");
+            return c.refuse("analysis.covariates", names.len(), limit);
+        }
+        c.distinct(key, &names)?;
+        match &self.people {
+            Some(path) if names.is_empty() => c.refuse(
+                "analysis.people",
+                format!("{path:?}"),
+                "needs analysis.subgroups or analysis.covariates",
+            ),
+            _ => Ok(()),
+        }
     }
 }
 

@@ -417,6 +417,9 @@ fn full_study() -> StudyFile {
             primary: vec![text()],
             reference: Some(text()),
             exclude: vec![Exclusion::Outlying],
+            people: Some(text()),
+            subgroups: vec![text()],
+            covariates: vec![text()],
         },
         published: Some(PublishedSection {
             source: text(),

@@ -72,6 +72,7 @@ impl Collector<'_> {
             sides,
             stimuli: self.stimuli.names,
             screens: self.screens,
+            people: Vec::new(),
             without_participant,
             unknown_stimuli,
         })

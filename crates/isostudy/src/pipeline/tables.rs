@@ -370,5 +370,8 @@ pub(super) fn study_inputs(study: &Study) -> Result<Inputs> {
     if let Some(path) = &study.responses {
         inputs = inputs.text("responses", &sha256_of_file(path)?);
     }
+    if let Some(path) = &study.people {
+        inputs = inputs.text("people", &sha256_of_file(path)?);
+    }
     Ok(inputs)
 }
