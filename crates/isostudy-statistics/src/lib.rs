@@ -15,6 +15,7 @@
 //! - A model's independence standard errors ([`WorthFit::covariance`]) are too small for clustered answers; they are there
 //!   to be compared with other programs.
 
+mod adaptive;
 mod attribute;
 mod ballot;
 pub mod bootstrap;
@@ -61,6 +62,7 @@ mod tipping;
 #[cfg(test)]
 mod golden;
 
+pub use adaptive::{Known, Shrunken, dealt_pairs, expected_information, next_pairs, shrunken};
 pub use attribute::{Attribute, AttributeTest, ORDERS, attribute_test};
 pub use ballot::{Answer, Ballot, DeclaredBallot, Outcome, Preference, ShownBallot};
 pub use closeness::{Closeness, closeness};
