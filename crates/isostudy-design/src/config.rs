@@ -17,6 +17,7 @@ pub use crate::method::{BudgetSection, Quantity, StimulusLook};
 pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
 pub use field::{FieldSection, Inside, MeshSourceSection, PointKernel, PointNormals};
 pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
+pub(crate) use forms::{is_english_alone, languages};
 pub use methods::{FactorSection, LevelSection, MethodSection, SpeltLevel};
 pub(crate) use objects::check_objects;
 pub use objects::{CameraSection, ObjectSection, RegionSection};

@@ -35,10 +35,12 @@ mod file;
 mod order;
 mod sides;
 mod split;
+mod spoken;
 mod spread;
 mod stimuli;
 
 pub use file::{FormEntry, FormFile, KeyEntry, Stimulus};
+pub use spoken::Language;
 
 use crate::config::{FormsSection, OrderRule, SideRule};
 use crate::method::ConfigurationId;

@@ -23,6 +23,7 @@ mod read;
 pub mod record;
 mod study;
 pub mod sweep;
+pub mod texts;
 pub mod wording;
 
 pub use check::ConfigError;

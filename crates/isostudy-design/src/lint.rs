@@ -30,12 +30,13 @@ pub enum Rule {
     UntestableComparison,
     NotEnoughParticipants,
     NamesReveal,
+    TextsMissing,
     StimuliDiffer,
 }
 
 impl Rule {
     /// Every rule, in the order of reports.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::SideConfounded,
         Self::SidesUnbalanced,
         Self::AppearancesUnequal,
@@ -46,6 +47,7 @@ impl Rule {
         Self::UntestableComparison,
         Self::NotEnoughParticipants,
         Self::NamesReveal,
+        Self::TextsMissing,
         Self::StimuliDiffer,
     ];
 
@@ -62,6 +64,7 @@ impl Rule {
             Self::UntestableComparison => "untestable-comparison",
             Self::NotEnoughParticipants => "not-enough-participants",
             Self::NamesReveal => "names-reveal",
+            Self::TextsMissing => "texts-missing",
             Self::StimuliDiffer => "stimuli-differ",
         }
     }
@@ -105,6 +108,9 @@ impl Rule {
             Self::NamesReveal => {
                 "Ids, texts, file names, sizes or metadata tell participants which configuration they see."
             }
+            Self::TextsMissing => {
+                "A language of the page has no text for a key: participants would read another language there."
+            }
             Self::StimuliDiffer => {
                 "The stimuli of one comparison differ in something besides the method: frames, duration, camera, \
                  background, colours, size or exposure."
@@ -130,6 +136,7 @@ impl Rule {
             Self::NamesReveal => {
                 "take the name out of what tells it: forms.names = \"code-names\", another question id or text, files made anew"
             }
+            Self::TextsMissing => "write the texts in [forms.texts], or in a file of forms.texts_files",
             Self::StimuliDiffer => "render both with the same turntable, shading and camera",
         }
     }
@@ -188,6 +195,10 @@ pub fn lint(study: &Study) -> Vec<Fault> {
     }
     faults.extend(reach::faults(study, section.participants as usize));
     faults.extend(names::names(study, section));
+    for (lang, keys) in questionnaire.file().missing_texts() {
+        let evidence = format!("no text for {}", keys.join(", "));
+        faults.push(Fault { rule: Rule::TextsMissing, place: format!("forms.texts.{lang}"), evidence });
+    }
     faults
 }
 

@@ -2,6 +2,7 @@
 
 mod checks;
 mod methods;
+mod texts;
 
 use crate::check::{Checker, ConfigError};
 use crate::code_names;
@@ -14,6 +15,7 @@ use crate::wording::did_you_mean;
 use checks::{check_forms, check_primary, check_reference, check_sections, check_stills};
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 impl Study {
@@ -82,6 +84,7 @@ impl Study {
                 claims: published_table(&checker, "published.claims", &section.claims)?,
             },
         };
+        let texts = file.forms.as_ref().map_or(Ok(BTreeMap::new()), |forms| texts::own(&checker, forms))?;
         let study = Self {
             path: path.into(),
             sha256: Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect(),
@@ -94,6 +97,7 @@ impl Study {
             responses,
             people,
             published,
+            texts,
             file,
         };
         check_primary(&checker, &study)?;

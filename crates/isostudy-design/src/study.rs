@@ -9,6 +9,8 @@ use crate::config::{ObjectSection, StimulusLook, StudyFile};
 use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, FactorSpec, Method, MethodId};
 use crate::published::{BenchmarkRow, Claim, PreferenceCell};
+use crate::texts::Texts;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// A study: its file, checked, with everything derived from it.
@@ -38,6 +40,8 @@ pub struct Study {
     pub people: Option<PathBuf>,
     /// Published numbers; empty for a new study.
     pub published: Published,
+    /// The study's own texts of the participant's page by language and key.
+    pub texts: BTreeMap<String, Texts>,
 }
 
 /// One object with one method.

@@ -7,17 +7,17 @@
  *
  * Resolves when its first frame can be seen. `changed` is called when it is laid out anew.
  */
-window.isostudyPair = async (study, file, box, make, changed) => {
+window.isostudyPair = async (study, text, file, box, make, changed) => {
   const FRAME_MS = study.loop_ms / file.frames;
   const [WIDTH, HEIGHT] = study.surface.map((pixels) => pixels * study.page_scale);
   // After so long a video whose bytes are all here is taken not to play.
   const NO_FRAME_MS = 5000;
-  const NAMES = [study.choices_stacked[0], study.choices_stacked[2]];
+  const NAMES = [text('upper'), text('lower')];
   const video = file.kind === 'gif' ? null : make('video', { muted: true, loop: true, playsInline: true, preload: 'auto', className: 'source', 'aria-hidden': 'true' });
 
-  const halves = ['Left', 'Right'].map((side, i) => {
-    const moving = video ? null : make('img', { alt: `${side} surface, turning.`, draggable: false, hidden: true });
-    const still = make('canvas', { role: 'img', 'aria-label': `${side} surface${video ? '' : ', stopped'}.` });
+  const halves = ['left', 'right'].map((side, i) => {
+    const moving = video ? null : make('img', { alt: text(`${side}_turning`), draggable: false, hidden: true });
+    const still = make('canvas', { role: 'img', 'aria-label': text(video ? `${side}_surface` : `${side}_stopped`) });
     const name = make('span', { className: 'name', 'aria-hidden': 'true' }, NAMES[i]);
     return { moving, still, element: make('div', { className: 'half' }, ...(moving ? [moving] : []), still, name) };
   });

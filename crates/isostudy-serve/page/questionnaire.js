@@ -11,6 +11,7 @@
   const address = new URLSearchParams(location.search);
   const given = (name) => address.get(name) ?? undefined;
   const WHO = study.server ? ['PROLIFIC_PID', 'STUDY_ID', 'SESSION_ID'] : ['form'];
+  const { text, speak, ...texts } = window.isostudyTexts(study);
   const KEY = `isostudy:${JSON.stringify([study.study, study.digest, ...WHO.map((name) => given(name) ?? null)])}`;
   // Keys are explained to those who have them.
   const TOUCH = window.matchMedia('(hover: none) and (pointer: coarse)').matches;
@@ -36,6 +37,7 @@
     leave();
     leave = () => {};
     document.body.className = '';
+    $('title').textContent = text('title');
     $('view').replaceChildren(...children);
     const heading = $('view').querySelector('h2');
     (heading || $('title')).focus();
@@ -44,7 +46,7 @@
   function heading(text) { return make('h2', { tabIndex: -1 }, text); }
 
   const loading = window.isostudyLoading(study);
-  const trial = window.isostudyTrial({ study, loading, make, say, heading, show, touch: TOUCH });
+  const trial = window.isostudyTrial({ study, text, loading, make, say, heading, show, touch: TOUCH });
 
   // ---- what survives a reload -------------------------------------------------------------------------------------
 
@@ -62,7 +64,7 @@
     try {
       localStorage.setItem(KEY, JSON.stringify(session));
     } catch {
-      say('This browser does not let the page store your answers: do not close or reload it before the end.');
+      say(text('cannot_store'));
     }
   }
 
@@ -119,6 +121,7 @@
     });
     if (!response.ok) {
       const error = new Error((await response.text()) || response.statusText);
+      error.status = response.status;
       error.refusal = response.headers.get('isostudy-refusal');
       // Whatever else goes wrong between here and the server may pass.
       error.final = error.refusal !== null || [400, 413, 415, 422].includes(response.status);
@@ -139,7 +142,7 @@
         if (error.conflict) throw error;
         if (error.refusal === 'unknown-token') return forget();
         if (error.final) return refused(error);
-        say('No connection. Your answers are kept here and sent as soon as there is one.');
+        say(text('no_connection'));
         await new Promise((resolve) => { setTimeout(resolve, wait); });
       }
     }
@@ -199,17 +202,19 @@
     localStorage.removeItem(KEY);
     session = null;
     consent(lost);
-    say('The study does not know this session any more. Please begin again.');
+    say(text('unknown_session'));
     return null;
   }
 
   /** The server will never take an answer: nobody is to give more of them. */
   function refused(error) {
-    const again = make('button', { type: 'button' }, 'Try again');
+    const again = make('button', { type: 'button' }, text('try_again'));
     again.addEventListener('click', () => location.reload());
     place = null;
     $('progress-row').hidden = true;
-    show(heading('Your answers could not be saved'), make('p', { className: 'text' }, `The server says: ${error.message}. Please download your answers and tell the people who run the study.`),
+    // In one word: whoever runs the study knows what it means, and the server speaks no other language.
+    const reason = error.refusal ?? String(error.status);
+    show(heading(text('not_saved')), make('p', { className: 'text' }, text('not_saved_help', { reason })),
       make('div', { className: 'row' }, ...downloads(session), again));
     say('');
     return null;
@@ -224,22 +229,22 @@
   function consent(lost = null) {
     place = null;
     $('progress-row').hidden = true;
-    const begin = make('button', { type: 'button', className: 'main' }, 'I agree, begin');
-    const parts = [heading('Before you begin'), make('p', { className: 'text' }, study.consent),
-      make('p', { className: 'text' }, 'With each answer is kept how it was shown: the size of this window, the pixels of the screen, mouse, touch or keys, pictures that were left out, and how long the page was out of sight. The name of your browser is not.')];
+    const begin = make('button', { type: 'button', className: 'main' }, text('begin'));
+    const parts = [heading(text('before')), ...languages(lost), make('p', { className: 'text' }, text('consent')),
+      make('p', { className: 'text' }, text('screen_note'))];
     if (study.server && WHO.some(given)) {
-      parts.push(make('p', { className: 'text' }, 'The address of this page names you by an identifier of the panel that sent you. It is kept apart from your answers, to tell the panel that you took part.'));
+      parts.push(make('p', { className: 'text' }, text('panel_note')));
     }
     let number = null;
     if (!study.server) {
       const input = make('input', { type: 'number', id: 'form', min: 1, max: study.forms.length, required: true, value: follows ? '' : given('form') ?? '' });
-      const asked = make('div', { className: 'row' }, make('label', { htmlFor: 'form' }, `Your number, 1 to ${study.forms.length}`), input);
+      const asked = make('div', { className: 'row' }, make('label', { htmlFor: 'form' }, text('your_number', { most: study.forms.length })), input);
       asked.hidden = input.value !== '' && input.validity.valid;
       parts.push(asked);
       number = () => (input.reportValidity() ? Number(input.value) : null);
     }
     if (lost?.answers.some((answer) => answer.choice)) {
-      parts.push(make('p', { className: 'text' }, 'Your earlier answers can be downloaded for the people who run the study.'), make('div', { className: 'row' }, ...downloads(lost)));
+      parts.push(make('p', { className: 'text' }, text('earlier_answers')), make('div', { className: 'row' }, ...downloads(lost)));
     }
     begin.addEventListener('click', async () => {
       const form = number ? number() : 0;
@@ -249,12 +254,32 @@
         await start(form);
       } catch (error) {
         begin.disabled = false;
-        say(error.final || error.busy ? error.message : 'No connection to the study. Please try again.');
+        say(text(cannotBegin(error)));
       }
     });
     show(...parts, make('div', { className: 'row' }, begin));
     // What everybody is shown first, while this is read.
     loading.ahead(null, study.first.slice(0, 1));
+  }
+
+  /** The key of what to say to somebody who cannot begin. */
+  function cannotBegin(error) {
+    if (error.busy) return 'crowded';
+    return { full: 'full', crowded: 'crowded', 'bad-identifier': 'bad_address' }[error.refusal] ?? 'cannot_begin';
+  }
+
+  /** Buttons for the study's languages, where it has several and the address names none of them. */
+  function languages(lost) {
+    if (study.languages.length < 2 || texts.offered(given('lang'))) return [];
+    const button = ({ lang, texts: { language, direction } }) => {
+      const choose = make('button', { type: 'button', lang, dir: direction, 'aria-pressed': String(lang === texts.lang()) }, language);
+      choose.addEventListener('click', () => {
+        speak(lang);
+        consent(lost);
+      });
+      return choose;
+    };
+    return [make('div', { className: 'row', role: 'group', 'aria-label': text('choose_language') }, ...study.languages.map(button))];
   }
 
   async function start(number) {
@@ -263,12 +288,12 @@
       const dealt = await post('api/sessions', {
         prolific_pid: given('PROLIFIC_PID'), study_id: given('STUDY_ID'), session_id: given('SESSION_ID'),
       });
-      session = { participant: dealt.participant, token: dealt.token, form: dealt.form, started: at, trained: 0, answers: [] };
+      session = { participant: dealt.participant, token: dealt.token, form: dealt.form, lang: texts.lang(), started: at, trained: 0, answers: [] };
       // Somebody who comes back in another browser goes on where the server's answers end.
       session.answers = Array.from({ length: dealt.answered }, () => ({ saved: true }));
     } else {
       const form = study.forms[number - 1];
-      session = { participant: randomId(), form, started: at, trained: 0, answers: [] };
+      session = { participant: randomId(), form, lang: texts.lang(), started: at, trained: 0, answers: [] };
     }
     keep();
     say('');
@@ -295,12 +320,12 @@
     $('progress').hidden = practice;
     $('progress').max = form.questions.length;
     $('progress').value = Math.max(question, 0);
-    $('progress-text').textContent = practice ? 'This answer does not count.' : `${question + 1} of ${form.questions.length}`;
-    const title = practice ? `Practice ${place + 1}` : `Question ${question + 1}`;
+    $('progress-text').textContent = practice ? text('does_not_count') : text('progress', { number: question + 1, total: form.questions.length });
+    const title = practice ? text('practice', { number: place + 1 }) : text('question', { number: question + 1 });
     leave = trial(codes[place], title, codes.slice(place + 1, place + 1 + AHEAD), (choice, times, screen) => {
       merge();
       if (place !== done()) {
-        say('This question has been answered in another tab.');
+        say(text('other_tab'));
       } else {
         say('');
         if (practice) session.trained += 1;
@@ -315,14 +340,14 @@
 
   function instructions() {
     $('progress-row').hidden = true;
-    const go = make('button', { type: 'button', className: 'main' }, 'Go on');
+    const go = make('button', { type: 'button', className: 'main' }, text('go_on'));
     go.addEventListener('click', () => {
       session.instructed = true;
       keep();
       next();
     });
-    const how = TOUCH ? 'Tap the surfaces to see them larger, and again to go back.' : 'Answer with the buttons, the keys 1, 2 and 3, or the arrows left, down and right. Click the surfaces to see them larger, and again to go back.';
-    show(heading('What to do'), make('p', { className: 'text' }, study.instructions), make('p', { className: 'text' }, `${how} You can answer as soon as you have seen one whole turn.`),
+    const how = text(TOUCH ? 'how_touch' : 'how_keys');
+    show(heading(text('what_to_do')), make('p', { className: 'text' }, text('instructions')), make('p', { className: 'text' }, `${how} ${text('how_soon')}`),
       make('div', { className: 'row' }, go));
     const { training, questions } = session.form;
     loading.ahead(null, [...training, ...questions].slice(0, 1));
@@ -335,28 +360,28 @@
     if (!study.server) {
       session.finished ??= new Date().toISOString();
       keep();
-      const again = make('button', { type: 'button' }, 'Next participant');
+      const again = make('button', { type: 'button' }, text('next_participant'));
       again.addEventListener('click', () => {
-        if (!session.downloaded && !window.confirm('The answers have not been downloaded. Delete them here?')) return;
+        if (!session.downloaded && !window.confirm(text('delete_unsaved'))) return;
         localStorage.removeItem(KEY);
         session = null;
         follows = true;
         consent();
       });
-      show(heading('Thank you'), make('p', { className: 'text' }, 'That was the last question. Please download the answers and give them to the people who run the study.'),
+      show(heading(text('thank_you')), make('p', { className: 'text' }, text('last_question')),
         make('div', { className: 'row' }, ...downloads(session), again));
       return;
     }
-    show(heading('Almost done'), make('p', {}, 'Your last answers are being saved.'));
+    show(heading(text('almost_done')), make('p', {}, text('saving_last')));
     try {
       if (!await send()) return;
       const reply = await insist('api/finish', { token: session.token });
       if (!reply) return;
-      const parts = [heading('Thank you'), make('p', { className: 'text' }, 'All your answers are saved. You can close this page.')];
+      const parts = [heading(text('thank_you')), make('p', { className: 'text' }, text('all_saved'))];
       if (reply.completion && /^https:\/\//.test(reply.completion)) {
-        parts.push(make('div', { className: 'row' }, make('a', { href: reply.completion, className: 'button main', rel: 'noreferrer' }, 'Finish')));
+        parts.push(make('div', { className: 'row' }, make('a', { href: reply.completion, className: 'button main', rel: 'noreferrer' }, text('finish'))));
       } else if (reply.completion) {
-        parts.push(make('p', {}, 'Your completion code: ', make('span', { className: 'code' }, reply.completion)));
+        parts.push(make('p', {}, `${text('completion_code')} `, make('span', { className: 'code' }, reply.completion)));
       }
       show(...parts);
       say('');
@@ -370,7 +395,7 @@
   /** Links to a session's answers as files. */
   function downloads(of) {
     return window.isostudyFiles(study, of).map(({ kind, type, name, text }) => {
-      const link = make('a', { className: kind === 'CSV' ? 'button main' : 'button', download: name, href: URL.createObjectURL(new Blob([text], { type })) }, `Download ${kind}`);
+      const link = make('a', { className: kind === 'CSV' ? 'button main' : 'button', download: name, href: URL.createObjectURL(new Blob([text], { type })) }, text('download', { kind }));
       link.addEventListener('click', () => {
         of.downloaded = true;
         keep();
@@ -381,8 +406,7 @@
 
   // ---- go ---------------------------------------------------------------------------------------------------------
 
-  document.title = study.title;
-  $('title').textContent = study.title;
+  texts.begin(given('lang'), session?.lang, ...navigator.languages);
   if (session) {
     if (study.server) send();
     next();

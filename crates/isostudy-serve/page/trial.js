@@ -1,9 +1,12 @@
 // One question: a pair, three answers, and when they can be given.
 'use strict';
 
-/** `page` has what the questionnaire shares: study, loading, make, say, heading, show and touch. */
-window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => {
+/** `page` has what the questionnaire shares: study, text, loading, make, say, heading, show and touch. */
+window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch }) => {
   const CHOICES = ['L', 'NP', 'R'];
+  // Keys of their names, side by side and one over the other.
+  const BESIDE = ['left', 'none', 'right'];
+  const STACKED = ['upper', 'none_stacked', 'lower'];
   // The three keys of each answer: by number, and by the arrow that points to it.
   const KEYS = [['1', 'ArrowLeft'], ['2', 'ArrowDown'], ['3', 'ArrowRight']];
   // The server takes no longer time for an answer than a day.
@@ -26,12 +29,12 @@ window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => 
   return (code, title, coming, answer) => {
     const words = make('p', { className: 'wait' });
     const pair = make('div', { className: 'pair', 'data-code': code }, words);
-    const pause = make('button', { type: 'button', className: 'soon' }, 'Play');
-    const larger = make('button', { type: 'button', className: 'soon', 'aria-pressed': 'false' }, 'Enlarge');
-    const smaller = make('button', { type: 'button', className: 'smaller' }, 'Smaller');
+    const pause = make('button', { type: 'button', className: 'soon' }, text('play'));
+    const larger = make('button', { type: 'button', className: 'soon', 'aria-pressed': 'false' }, text('enlarge'));
+    const smaller = make('button', { type: 'button', className: 'smaller' }, text('smaller'));
     const buttons = CHOICES.map((choice, i) => make('button', { type: 'button', 'aria-disabled': 'true', 'data-choice': choice, 'aria-keyshortcuts': KEYS[i].join(' ') },
       make('span'), ...(touch ? [] : [make('kbd', { 'aria-hidden': 'true' }, KEYS[i][0])])));
-    const question = make('fieldset', {}, make('legend', {}, study.prompt), make('div', { className: 'choices' }, ...buttons));
+    const question = make('fieldset', {}, make('legend', {}, text('prompt')), make('div', { className: 'choices' }, ...buttons));
 
     // What is on the screen, once all of it is there; since when it is seen; how long it has been seen moving.
     let shown = null;
@@ -49,15 +52,15 @@ window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => 
 
     /** Why there is no answer yet. */
     function wait() {
-      if (shown === null) return 'Please wait until both surfaces are loaded.';
-      if (small) return 'Please enlarge this window, or turn the device.';
-      return moving === null ? 'Please play one whole turn first.' : 'Please watch one whole turn first.';
+      if (shown === null) return text('wait_loading');
+      if (small) return text('wait_small');
+      return text(moving === null ? 'wait_play' : 'wait_watch');
     }
 
     function unlock() {
       open = true;
       buttons.forEach((button) => button.removeAttribute('aria-disabled'));
-      say('You can answer now.');
+      say(text('can_answer'));
     }
 
     async function play() {
@@ -77,7 +80,7 @@ window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => 
         return;
       }
       moving = performance.now();
-      pause.textContent = 'Pause';
+      pause.textContent = text('pause');
       if (!open) {
         say('');
         timer = setTimeout(unlock, Math.max(0, study.loop_ms - watched));
@@ -89,7 +92,7 @@ window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => 
       moving = null;
       clearTimeout(timer);
       shown?.stop();
-      pause.textContent = 'Play';
+      pause.textContent = text('play');
     }
 
     /** The clock starts with the first frame that is on a screen. */
@@ -99,19 +102,19 @@ window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => 
       requestAnimationFrame(() => requestAnimationFrame(() => {
         if (!ready()) return;
         seenAt = performance.now();
-        if (wanted) play(); else say('Your device asks for less motion. Press Play, watch one whole turn, then answer.');
+        if (wanted) play(); else say(text('less_motion'));
       }));
     }
 
     /** Each surface is so many pixels wide now. */
     function laidOut(width) {
-      const names = pair.classList.contains('stacked') ? study.choices_stacked : study.choices;
+      const names = (pair.classList.contains('stacked') ? STACKED : BESIDE).map((key) => text(key));
       buttons.forEach((button, i) => { button.firstChild.textContent = names[i]; });
       small = study.min_surface_px !== undefined && width < study.min_surface_px;
       pair.classList.toggle('small', small);
       if (small) {
         if (moving !== null) stop();
-        words.textContent = `This window is too small: each surface has to be ${study.min_surface_px} pixels wide, and is ${width}. Please enlarge the window, turn the device, or use a larger screen.`;
+        words.textContent = text('too_small', { least: study.min_surface_px, width });
         pair.append(words);
       } else {
         words.remove();
@@ -181,10 +184,10 @@ window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => 
       let file = null;
       try {
         file = await loading.whole(code, (share) => {
-          if (!over && shown === null) words.textContent = share > 0 ? `Loading, ${Math.floor(100 * share)} %` : 'Loading';
+          if (!over && shown === null) words.textContent = share > 0 ? text('loading_share', { share: Math.floor(100 * share) }) : text('loading');
         });
         if (over) return;
-        const made = await window.isostudyPair(study, file, pair, make, laidOut);
+        const made = await window.isostudyPair(study, text, file, pair, make, laidOut);
         if (over) {
           made.leave();
           return;
@@ -199,7 +202,7 @@ window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => 
         // The other kind at once; the same again after a while.
         const other = file !== null && file.kind !== 'gif' && loading.without(file.kind);
         if (!other) {
-          words.textContent = 'The pair could not be loaded. It is tried again.';
+          words.textContent = text('load_again');
           pair.replaceChildren(words);
         }
         setTimeout(() => { if (!over) load(); }, other ? 0 : AGAIN_MS);
@@ -217,7 +220,7 @@ window.isostudyTrial = ({ study, loading, make, say, heading, show, touch }) => 
     larger.addEventListener('click', () => enlarge(true));
     pair.addEventListener('click', () => enlarge(!pair.classList.contains('large')));
     buttons.forEach((button, i) => {
-      button.firstChild.textContent = study.choices[i];
+      button.firstChild.textContent = text(BESIDE[i]);
       button.addEventListener('click', (event) => choose(i, inputOf(event)));
     });
     document.addEventListener('keydown', key);

@@ -122,6 +122,8 @@ mod tests {
             choices: ["Left | a", "[None](http://example.org)", "Right"].map(Into::into),
             choices_stacked: None,
             min_surface_px: None,
+            languages: vec!["en".into()],
+            texts: std::collections::BTreeMap::new(),
             consent: String::new(),
             instructions: String::new(),
             loop_ms: 100,

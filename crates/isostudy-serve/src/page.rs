@@ -1,18 +1,36 @@
 //! The questionnaire's page.
 
-use isostudy_design::forms::{FormEntry, FormFile};
+use isostudy_design::forms::{FormEntry, FormFile, Language};
 use serde::Serialize;
 
-/// The files of the page but `forms.js` and the stimuli: name, MIME type, content.
+/// The files of the page that are the same for all studies: name, MIME type, content.
 pub const FILES: [(&str, &str, &str); 7] = [
-    ("index.html", "text/html; charset=utf-8", include_str!("../page/index.html")),
     ("questionnaire.css", "text/css; charset=utf-8", include_str!("../page/questionnaire.css")),
+    ("texts.js", "text/javascript; charset=utf-8", include_str!("../page/texts.js")),
     ("files.js", "text/javascript; charset=utf-8", include_str!("../page/files.js")),
     ("loading.js", "text/javascript; charset=utf-8", include_str!("../page/loading.js")),
     ("pair.js", "text/javascript; charset=utf-8", include_str!("../page/pair.js")),
     ("trial.js", "text/javascript; charset=utf-8", include_str!("../page/trial.js")),
     ("questionnaire.js", "text/javascript; charset=utf-8", include_str!("../page/questionnaire.js")),
 ];
+
+/// The one file that is not: `index.html`, in the study's first language; without scripts it speaks all of them.
+pub fn index(file: &FormFile) -> String {
+    let spoken = file.spoken();
+    let escape = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+    let line = |one: &Language| {
+        let (lang, direction) = (&one.lang, one.direction());
+        format!("<p lang=\"{lang}\" dir=\"{direction}\">{}</p>", escape(&one.texts["no_script"]))
+    };
+    let no_script: String = spoken.iter().map(line).collect();
+    let Some(first) = spoken.first() else { return String::new() };
+    // The title last: nothing in it is filled in.
+    include_str!("../page/index.html")
+        .replace("{lang}", &first.lang)
+        .replace("{direction}", first.direction())
+        .replace("{no_script}", &no_script)
+        .replace("{title}", &escape(&first.texts["title"]))
+}
 
 /// How a pair is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -87,14 +105,9 @@ struct KnownKind {
 struct Known<'a> {
     study: &'a str,
     digest: &'a str,
-    title: &'a str,
-    prompt: &'a str,
-    choices: &'a [String; 3],
-    choices_stacked: [String; 3],
+    languages: Vec<Language>,
     #[serde(skip_serializing_if = "Option::is_none")]
     min_surface_px: Option<u32>,
-    consent: &'a str,
-    instructions: &'a str,
     loop_ms: u32,
     page_scale: u32,
     surface: [u32; 2],
@@ -120,13 +133,8 @@ pub fn forms_js(file: &FormFile, digest: &str, media: &Media, server: bool) -> S
     let known = Known {
         study: &file.study,
         digest,
-        title: &file.title,
-        prompt: &file.prompt,
-        choices: &file.choices,
-        choices_stacked: file.stacked_choices(),
+        languages: file.spoken(),
         min_surface_px: file.min_surface_px,
-        consent: &file.consent,
-        instructions: &file.instructions,
         loop_ms: file.loop_ms,
         page_scale: file.page_scale,
         surface: media.surface,
@@ -137,4 +145,86 @@ pub fn forms_js(file: &FormFile, digest: &str, media: &Media, server: bool) -> S
     };
     let json = serde_json::to_string(&known).expect("names and numbers alone");
     format!("window.ISOSTUDY = {json};\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isostudy_design::texts::shipped;
+
+    fn scripts() -> String {
+        FILES.iter().map(|(_, _, content)| *content).collect()
+    }
+
+    /// Words that a script asks for in this way: `text('go_on'` gives `go_on`.
+    fn asked<'a>(script: &'a str, how: &str) -> Vec<&'a str> {
+        script.split(how).skip(1).filter_map(|rest| rest.split_once('\'').map(|(key, _)| key)).collect()
+    }
+
+    #[test]
+    fn the_scripts_ask_for_texts_that_there_are_and_for_all_of_them() {
+        let (english, scripts) = (shipped("en").unwrap(), scripts());
+        let keys = asked(&scripts, "text('");
+        assert!(keys.len() > 40, "{keys:?}");
+        for key in keys {
+            assert!(english.contains_key(key) || ["title", "prompt"].contains(&key), "{key}");
+        }
+        let of_the_file = ["language", "direction", "no_script"];
+        for key in english.keys().filter(|key| !of_the_file.contains(&key.as_str())) {
+            // Both sides of a pair are asked for by one line.
+            let end = ["left_", "right_"].iter().find_map(|side| key.strip_prefix(side));
+            let is_asked = scripts.contains(&format!("'{key}'"))
+                || end.is_some_and(|end| scripts.contains(&format!("${{side}}_{end}")));
+            assert!(is_asked, "nothing says {key}");
+        }
+    }
+
+    /// What a participant could read stands in the texts: a script has no sentence of its own.
+    #[test]
+    fn the_scripts_say_nothing_themselves() {
+        let (scripts, english) = (scripts(), shipped("en").unwrap());
+        for (key, text) in english.iter().filter(|(_, text)| text.contains(' ')) {
+            assert!(!scripts.contains(text.as_str()), "{key}");
+        }
+        for line in
+            scripts.lines().filter(|line| !line.trim_start().starts_with("//") && !line.contains("* "))
+        {
+            for quoted in asked(line, " '").into_iter().chain(asked(line, "('")) {
+                let is_sentence =
+                    quoted.split(' ').count() > 2 && quoted.starts_with(|c: char| c.is_uppercase());
+                assert!(!is_sentence, "{quoted}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_file_is_in_the_first_language_and_no_text_is_mark_up() {
+        let file = FormFile {
+            schema: 1,
+            study: "trial".into(),
+            title: "{no_script} <b>&\"".into(),
+            prompt: "?".into(),
+            choices: ["a", "b", "c"].map(Into::into),
+            choices_stacked: None,
+            min_surface_px: None,
+            languages: vec!["ar".into(), "de".into()],
+            texts: std::collections::BTreeMap::new(),
+            consent: String::new(),
+            instructions: String::new(),
+            loop_ms: 100,
+            page_scale: 1,
+            forms: Vec::new(),
+        };
+        let page = index(&file);
+        assert!(page.contains("<html lang=\"ar\" dir=\"rtl\">"), "{page}");
+        assert!(page.contains("<title>{no_script} &lt;b>&amp;&quot;</title>"), "{page}");
+        for lang in ["ar", "de"] {
+            let said = &shipped(lang).unwrap()["no_script"];
+            assert!(
+                page.contains(&format!(">{said}</p>")) && page.contains(&format!("<p lang=\"{lang}\"")),
+                "{lang}"
+            );
+        }
+        assert!(!page.contains("needs JavaScript"), "{page}");
+    }
 }

@@ -96,6 +96,7 @@ struct Shared {
     machine: Arc<dyn Machine>,
     settings: Settings,
     journal: Handle,
+    index: Bytes,
     forms_js: Bytes,
     stimuli: BTreeSet<String>,
     turns: Arc<Semaphore>,
@@ -115,6 +116,7 @@ impl Shared {
     ) -> Self {
         let most = settings.limits.sessions_per_address;
         Self {
+            index: Bytes::from(page::index(&settings.file)),
             forms_js: Bytes::from(forms_js(&settings.file, &settings.digest, &settings.media, true)),
             settings,
             machine,
@@ -203,7 +205,7 @@ fn site(shared: Arc<Shared>) -> Router {
         .route("/api/admin/identities.csv", get(admin::identities))
         .layer(fixed("cache-control", "no-store"));
     let pages = Router::new()
-        .route("/", get(|| async { page_file("index.html") }))
+        .route("/", get(|site: Site| async move { file("index.html", &site) }))
         .route("/{name}", get(|Matched(name): Matched<String>, site: Site| async move { file(&name, &site) }))
         .route("/stimuli/{name}", get(stimuli::stimulus));
     limits::limited(asked.merge(pages))
@@ -219,6 +221,7 @@ fn site(shared: Arc<Shared>) -> Router {
 
 fn file(name: &str, site: &Shared) -> Response {
     match name {
+        "index.html" => typed("text/html; charset=utf-8", site.index.clone()),
         "forms.js" => typed("text/javascript; charset=utf-8", site.forms_js.clone()),
         "researcher" => typed("text/html; charset=utf-8", admin::PAGE),
         "researcher.js" => typed("text/javascript; charset=utf-8", admin::SCRIPT),

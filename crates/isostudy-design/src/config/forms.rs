@@ -2,7 +2,9 @@
 
 use super::{perhaps_whole, whole};
 use crate::method::ConfigurationId;
+use crate::texts::{Texts, english};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Which configuration of a comparison is on the left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -85,17 +87,31 @@ pub struct FormsSection {
     pub web_mb: u32,
     /// A code or an `https://` address that participants get from the server when their last answer is saved.
     pub completion: Option<String>,
+    /// Languages of the page as in `lang` of HTML. The study's other texts are in the first.
+    #[serde(default = "languages", skip_serializing_if = "is_english_alone")]
+    pub languages: Vec<String>,
+    /// Texts of the page by language and key, in place of the shipped ones.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub texts: BTreeMap<String, Texts>,
+    /// Files of such texts by language.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub texts_files: BTreeMap<String, String>,
 }
 
 fn consent() -> String {
-    "You will see pairs of moving pictures of computer-generated surfaces and say which of the two you like better. Your answers and the time they took are kept. Your name \
-     is not asked. Taking part is voluntary, and you can stop at any time by closing this page."
-        .into()
+    english()["consent"].clone()
 }
 
 fn instructions() -> String {
-    "Look at both surfaces while they turn, then say which of the two you like better. There are no right or wrong answers."
-        .into()
+    english()["instructions"].clone()
+}
+
+pub(crate) fn languages() -> Vec<String> {
+    vec!["en".into()]
+}
+
+pub(crate) fn is_english_alone(languages: &[String]) -> bool {
+    languages == ["en"]
 }
 
 fn once() -> u32 {

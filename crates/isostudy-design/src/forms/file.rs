@@ -1,8 +1,10 @@
 //! Forms as a file for whoever puts them to people, and the key for whoever reads the answers.
 
 use super::{Form, Questionnaire, Role};
+use crate::config::{is_english_alone, languages};
 use crate::method::ConfigurationId;
 use crate::study::Study;
+use crate::texts::Texts;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -29,6 +31,12 @@ pub struct FormFile {
     /// Least width of each surface on the screen, in CSS pixels, at which it can be judged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min_surface_px: Option<u32>,
+    /// Languages of the page; the texts above and below are in the first.
+    #[serde(default = "languages", skip_serializing_if = "is_english_alone")]
+    pub languages: Vec<String>,
+    /// The study's own texts of the page by language and key; [`FormFile::spoken`] has all.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub texts: BTreeMap<String, Texts>,
     /// What participants agree to before they begin.
     pub consent: String,
     /// What they are told to do.
@@ -39,19 +47,6 @@ pub struct FormFile {
     pub page_scale: u32,
     /// One form a planned participant, in the order in which they are dealt.
     pub forms: Vec<FormEntry>,
-}
-
-impl FormFile {
-    /// The answers where one surface is over the other: `Left` and `Right` are `Top` and `Bottom` there, unless the study says
-    /// otherwise, and other words stay.
-    pub fn stacked_choices(&self) -> [String; 3] {
-        let turned = |text: &String| match text.as_str() {
-            "Left" => "Top".to_owned(),
-            "Right" => "Bottom".to_owned(),
-            _ => text.clone(),
-        };
-        self.choices_stacked.clone().unwrap_or_else(|| self.choices.each_ref().map(turned))
-    }
 }
 
 /// One participant's form.
@@ -108,6 +103,8 @@ impl Questionnaire<'_> {
             choices: self.section.choices.clone(),
             choices_stacked: self.section.choices_stacked.clone(),
             min_surface_px: self.section.min_surface_px,
+            languages: self.section.languages.clone(),
+            texts: self.study.texts.clone(),
             consent: self.section.consent.clone(),
             instructions: self.section.instructions.clone(),
             loop_ms: self.study.file.turntable.loop_ms(),

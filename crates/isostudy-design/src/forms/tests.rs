@@ -35,6 +35,9 @@ fn balanced(participants: u32, controls: u32, repeats: u32, max_questions: u32) 
         min_surface_px: None,
         web_mb: 40,
         completion: None,
+        languages: vec!["en".into()],
+        texts: Default::default(),
+        texts_files: Default::default(),
     }
 }
 

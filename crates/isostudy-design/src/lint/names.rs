@@ -38,6 +38,12 @@ pub(super) fn names(study: &Study, section: &FormsSection) -> Vec<Fault> {
     for (key, text) in [("forms.consent", &section.consent), ("forms.instructions", &section.instructions)] {
         texts.push((key.into(), text.clone(), false));
     }
+    for (lang, own) in &study.texts {
+        for (key, text) in own {
+            let short = !["consent", "instructions"].contains(&key.as_str());
+            texts.push((format!("forms.texts.{lang}.{key}"), text.clone(), short));
+        }
+    }
     for (key, text, short) in texts {
         let words = words(&text);
         let names = told.iter().chain(codes.iter().filter(|_| short));

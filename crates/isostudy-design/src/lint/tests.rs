@@ -348,3 +348,28 @@ fn every_rule_has_an_id_of_its_own_and_says_what_it_means() {
     let plain = |id: &str| id.bytes().all(|b| b.is_ascii_lowercase() || b == b'-');
     assert!(Rule::ALL.iter().all(|rule| plain(rule.id()) && rule.meaning().ends_with('.')));
 }
+
+#[test]
+fn a_language_without_a_text_is_found() {
+    let mut study = balanced();
+    let section = forms(&mut study);
+    section.languages = ["en", "fr"].map(String::from).into();
+    section.choices = ["Left", "No preference", "Right"].map(String::from);
+    let text = |text: &str| text.to_owned();
+    study.texts = [(text("fr"), [(text("title"), text("Laquelle ?"))].into())].into();
+    let faults = lint(&study);
+    let found: Vec<(Rule, &str)> = faults.iter().map(|fault| (fault.rule, fault.place.as_str())).collect();
+    assert_eq!(found, [(Rule::TextsMissing, "forms.texts.fr")]);
+    assert!(
+        faults[0].evidence.ends_with("prompt") && !faults[0].evidence.contains("title"),
+        "{}",
+        faults[0].evidence
+    );
+    // A text that tells what is shown is found in every language.
+    study.texts.get_mut("fr").unwrap().insert(text("prompt"), text("ss_bi ou autre ?"));
+    let faults = lint(&study);
+    assert!(
+        faults.iter().any(|f| f.rule == Rule::NamesReveal && f.place == "forms.texts.fr.prompt"),
+        "{faults:?}"
+    );
+}

@@ -248,7 +248,9 @@ fn walk(table: &str, value: &Json, keys: &mut BTreeSet<Key>) {
                 let path = if table.is_empty() { key.clone() } else { format!("{table}.{key}") };
                 keys.insert((table.to_owned(), kind.clone(), key.clone()));
                 // Keys of these are the study's own, or another crate's.
-                if !["extraction", "methods.levels", "methods.recipe"].contains(&path.as_str()) {
+                if !["extraction", "methods.levels", "methods.recipe", "forms.texts", "forms.texts_files"]
+                    .contains(&path.as_str())
+                {
                     walk(&path, value, keys);
                 }
             }
@@ -384,6 +386,9 @@ fn full_study() -> StudyFile {
             page_scale: 1,
             web_mb: 41,
             completion: Some(text()),
+            languages: vec!["de".into()],
+            texts: [(text(), [(text(), text())].into())].into(),
+            texts_files: [(text(), text())].into(),
         }),
         responses: Some(ResponsesSection {
             file: Some(text()),

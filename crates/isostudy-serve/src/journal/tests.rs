@@ -15,6 +15,8 @@ fn file(forms: usize) -> FormFile {
         choices: ["Left".into(), "None".into(), "Right".into()],
         choices_stacked: None,
         min_surface_px: None,
+        languages: vec!["en".into()],
+        texts: std::collections::BTreeMap::new(),
         consent: "Yes".into(),
         instructions: "Look".into(),
         loop_ms: 100,

@@ -117,6 +117,8 @@ impl Pipeline<'_> {
             writer.write(&format!("{BUNDLE}/forms.json"), &text)?;
             let script = isostudy_serve::page::forms_js(&file, &forms_digest(&file)?, &media, false);
             writer.write(&format!("{BUNDLE}/forms.js"), script.as_bytes())?;
+            let index = isostudy_serve::page::index(&file);
+            writer.write(&format!("{BUNDLE}/index.html"), index.as_bytes())?;
             for (name, _, content) in isostudy_serve::page::FILES {
                 writer.write(&format!("{BUNDLE}/{name}"), content.as_bytes())?;
             }

@@ -42,6 +42,8 @@ fn settings() -> Settings {
             choices: ["Left".into(), "None".into(), "Right".into()],
             choices_stacked: None,
             min_surface_px: None,
+            languages: vec!["en".into()],
+            texts: std::collections::BTreeMap::new(),
             consent: "Yes".into(),
             instructions: "Look".into(),
             loop_ms: 100,
