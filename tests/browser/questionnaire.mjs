@@ -1,130 +1,17 @@
 // The questionnaire in a real browser: a page from a folder, the server, the researcher's page.
 // Run by scripts/test-browser.sh, which sets ISOSTUDY (the program), CHROMIUM and MODULES.
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
+import { spawnSync } from 'node:child_process';
 import fs from 'node:fs';
-import { createRequire } from 'node:module';
-import os from 'node:os';
 import path from 'node:path';
-import test, { after, before } from 'node:test';
-import { fileURLToPath, pathToFileURL } from 'node:url';
+import test from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { CHOICES, MOST, PHONE, TOKEN, all, answer, asGiven, begin, browser, folder, open, questionnaire, ready, rows, run, serious, serve as serving, shown, tab } from './walk.mjs';
 
-const { ISOSTUDY, CHROMIUM, MODULES } = process.env;
-const require = createRequire(path.join(MODULES, 'package.json'));
-const { chromium } = require('playwright-core');
-const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
-
-const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
-const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'isostudy-'));
-const config = path.join(folder, 'study.toml');
-const out = path.join(folder, 'out');
-const TOKEN = 'a-token-for-this-test';
-const MOST = 6;
-
-let browser;
-const children = new Set();
-before(async () => {
-  const text = fs.readFileSync(path.join(root, 'configs/two-methods.toml'), 'utf8')
-    .replace('width = 320', 'width = 128').replace('height = 320', 'height = 128').replace('frames = 72', 'frames = 4')
-    .replace('duration_s = 5.76', 'duration_s = 0.4').replaceAll('stimulus_spacing = 0.08', 'stimulus_spacing = 0.2')
-    .replace('"cpu/', `"${root}/configs/cpu/`).replace('max_questions = 6', 'max_questions = 6\npage_scale = 4\ncompletion = "C0DE-42"');
-  fs.writeFileSync(config, text);
-  run('bundle', config, '--out', out);
-  browser = await chromium.launch({
-    executablePath: CHROMIUM,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-  });
-});
-after(async () => {
-  await browser?.close();
-  for (const child of children) child.kill('SIGKILL');
-  fs.rmSync(folder, { recursive: true });
-});
-
-function run(...words) {
-  const done = spawnSync(ISOSTUDY, words, { encoding: 'utf8' });
-  assert.equal(done.status, 0, done.stderr);
-  return done.stdout;
-}
-
-/** A server, its answers in a folder of that name; on a free port if none is said. */
-async function serve(name, port = '0', [study, made] = [config, out]) {
-  const answers = path.join(folder, name);
-  const child = spawn(ISOSTUDY, ['serve', study, '--out', made, '--answers', answers, '--port', port, '--admin-token', TOKEN], { stdio: ['ignore', 'ignore', 'pipe'] });
-  children.add(child);
-  let said = '';
-  const address = await new Promise((resolve, reject) => {
-    child.stderr.on('data', (data) => {
-      said += data;
-      const found = said.match(/questionnaire\s+(http:\S+)\n/);
-      if (found) resolve(found[1]);
-    });
-    child.on('exit', (code) => reject(new Error(`the server ended with ${code}: ${said}`)));
-  });
-  const ended = new Promise((resolve) => { child.on('exit', resolve); });
-  return {
-    address,
-    answers,
-    export: async (file = 'answers.csv') => {
-      const response = await fetch(`${address}api/admin/${file}`, { headers: { authorization: `Bearer ${TOKEN}` } });
-      assert.equal(response.status, 200);
-      return response.text();
-    },
-    stop: (signal = 'SIGTERM') => { child.kill(signal); return ended; },
-  };
-}
-
-const rows = (csv) => {
-  const [header, ...lines] = csv.trim().split(/\r?\n/).map((line) => line.split(','));
-  return lines.map((cells) => Object.fromEntries(header.map((name, i) => [name, cells[i]])));
-};
-
-/** A page on which nothing goes wrong and nobody else is asked for anything, in a browser of its own. */
-async function open(address, options = {}) {
-  return tab(await browser.newContext({ acceptDownloads: true, ...options }), address);
-}
-
-/** One more page in a browser. */
-async function tab(context, address) {
-  const page = await context.newPage();
-  page.on('pageerror', (error) => { throw error; });
-  page.on('request', (request) => {
-    const asked = new URL(request.url());
-    assert.ok(['file:', 'blob:', 'data:'].includes(asked.protocol) || asked.origin === new URL(address).origin, request.url());
-  });
-  await page.goto(address);
-  return page;
-}
-
-const begin = async (page) => {
-  await page.getByRole('button', { name: 'I agree, begin' }).click();
-  await page.getByRole('button', { name: 'Go on' }).click();
-};
-
-const shown = (page) => page.locator('.pair').getAttribute('data-code');
-const ready = (page) => page.locator('[data-choice="L"]:not([aria-disabled])').waitFor();
-
-/** Answers what is on the screen, and returns what it was. */
-async function answer(page, choice, how = 'mouse') {
-  const title = await page.locator('h2').textContent();
-  await ready(page);
-  const code = await shown(page);
-  if (how === 'mouse') await page.locator(`[data-choice="${choice}"]`).click();
-  else await page.keyboard.press(how[choice]);
-  await page.waitForFunction((old) => document.querySelector('h2').textContent !== old, title);
-  return { code, choice };
-}
-
-const CHOICES = ['L', 'R', 'NP', 'R', 'L', 'NP'];
-
-async function all(page, how) {
-  await answer(page, 'L', how);
-  const given = [];
-  for (const choice of CHOICES) given.push(await answer(page, choice, how));
-  return given;
-}
-
-const asGiven = (line) => ({ code: line.stimulus, choice: line.choice });
+const made = questionnaire('study');
+const { config, out } = made;
+/** A server of that study, or of another one that was bundled. */
+const serve = (name, port = '0', of = made) => serving(of, name, port);
 
 test('a form by mouse and one by keyboard arrive as they were given', async () => {
   const server = await serve('two');
@@ -432,10 +319,7 @@ test('accessible, and fit for a phone', async () => {
   for (const viewport of [{ width: 360, height: 640 }, { width: 1280, height: 800 }]) {
     const page = await open(server.address, { viewport });
     const judge = async (where) => {
-      await page.evaluate(axe);
-      const { violations } = await page.evaluate(() => window.axe.run());
-      const serious = violations.filter((found) => ['serious', 'critical'].includes(found.impact));
-      assert.deepEqual(serious.map((found) => `${where}: ${found.id}: ${found.help}`), []);
+      assert.deepEqual(await serious(page), [], where);
       const wide = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
       assert.ok(wide <= 0, `${where} is ${wide} px too wide`);
     };
@@ -457,9 +341,7 @@ test('accessible, and fit for a phone', async () => {
   await page.getByLabel('Token').fill(TOKEN);
   await page.getByRole('button', { name: 'Show' }).click();
   await page.locator('#stand').waitFor();
-  await page.evaluate(axe);
-  const { violations } = await page.evaluate(() => window.axe.run());
-  assert.deepEqual(violations.filter((found) => ['serious', 'critical'].includes(found.impact)).map((found) => found.id), []);
+  assert.deepEqual(await serious(page), []);
   if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'researcher.png'), fullPage: true });
   await server.stop();
 });
@@ -514,8 +396,6 @@ test('three robots with known preferences, and the analysis finds them', async (
   const wins = Object.fromEntries(groups.map((line) => [line.configuration, [line.wins, line.answers]]));
   assert.deepEqual(wins, { bu: ['0', '6'], bi: ['6', '6'] });
 });
-
-const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 3, hasTouch: true, isMobile: true };
 
 /** Where both surfaces are. */
 async function surfaces(page) {
@@ -573,12 +453,8 @@ test('on a phone the surfaces stand one over the other, as large as it allows, a
 });
 
 test('in a wide window a pair is up to twice as large as it was made, smoothly, and enlarged it leaves the answers', async () => {
-  const plain = path.join(folder, 'plain.toml');
-  const text = fs.readFileSync(config, 'utf8').replace('page_scale = 4', 'page_scale = 1').replace('width = 128', 'width = 320').replace('height = 128', 'height = 320');
-  fs.writeFileSync(plain, text);
-  const made = path.join(folder, 'plain');
-  run('bundle', plain, '--out', made);
-  const server = await serve('wide', '0', [plain, made]);
+  const plain = questionnaire('plain', (text) => text.replace('page_scale = 4', 'page_scale = 1').replace('width = 128', 'width = 320').replace('height = 128', 'height = 320'));
+  const server = await serve('wide', '0', plain);
   const page = await open(server.address, { viewport: { width: 1280, height: 900 } });
   await begin(page);
   await ready(page);
@@ -647,13 +523,10 @@ test('both halves of an animation show one frame of it', async () => {
 
 test('on a slow line the first pair comes during consent, the share is told, and no clock runs before it is seen', async () => {
   // Large enough that it comes in several parts.
-  const large = path.join(folder, 'large.toml');
-  const text = fs.readFileSync(config, 'utf8').replace('width = 128', 'width = 320').replace('height = 128', 'height = 320').replace('frames = 4', 'frames = 16');
-  fs.writeFileSync(large, text.replace('duration_s = 0.4', 'duration_s = 1.6'));
-  const made = path.join(folder, 'large');
-  run('bundle', large, '--out', made);
-  const server = await serve('slow', '0', [large, made]);
-  const stimuli = path.join(made, 'bundle/stimuli');
+  const large = questionnaire('large', (text) => text.replace('width = 128', 'width = 320').replace('height = 128', 'height = 320')
+    .replace('frames = 4', 'frames = 16').replace('duration_s = 0.4', 'duration_s = 1.6'));
+  const server = await serve('slow', '0', large);
+  const stimuli = path.join(large.out, 'bundle/stimuli');
   const bytes = fs.statSync(path.join(stimuli, fs.readdirSync(stimuli)[0])).size;
   let page, line;
   // The practice shows a pair of the study's. Whoever meets it again where the line matters has it already, and is of no use here.
@@ -772,10 +645,10 @@ test('videos are shown where there are some, both halves from one', async (t) =>
     t.skip('NO FFMPEG');
     return;
   }
-  const made = path.join(folder, 'videos');
-  run('bundle', config, '--out', made, '--mp4');
-  const address = `${pathToFileURL(path.join(made, 'bundle/index.html')).href}?form=2`;
-  const server = await serve('moving', '0', [config, made]);
+  const moving = path.join(folder, 'videos');
+  run('bundle', config, '--out', moving, '--mp4');
+  const address = `${pathToFileURL(path.join(moving, 'bundle/index.html')).href}?form=2`;
+  const server = await serve('moving', '0', { config, out: moving });
   // A canvas with frames of a file may not be read, one with frames from a server may.
   const watched = await open(server.address, { reducedMotion: 'reduce' });
   await begin(watched);
