@@ -8,7 +8,7 @@ use isostudy_design::config::Quantity;
 use isostudy_design::record::Purpose;
 use isostudy_design::wording::{did_you_mean, plainly};
 use isostudy_design::{MethodId, Study};
-use isostudy_extract::{Method, Positions, Tetrahedra, kinds, presets};
+use isostudy_extract::{Method, Positions, kinds, presets};
 use isostudy_finish::Step;
 use isostudy_program::Program;
 use serde::Deserialize;

@@ -29,7 +29,8 @@ fn every_key_is_read() {
     let section = with(
         "[analysis]\ndeclared = 2026-11-21\nfirst_answer = \"2026-12-01\"\nanswers_known = false\nlevel = 0.01\nmargin = 0.3\n\
          families = \"one\"\nprimary = [\"U-I\", \"U-I sphere\"]\n\
-         reference = \"bi\"\nexclude = [\"one-sided\", \"controls\", \"repeats\", \"time\", \"outlying\"]",
+         reference = \"bi\"\nexclude = [\"one-sided\", \"controls\", \"repeats\", \"time\", \"outlying\"]\n\
+         people = \"people.csv\"\nsubgroups = [\"expertise\"]\ncovariates = [\"age\"]",
     );
     let expected = AnalysisSection {
         declared: Some(day("2026-11-21")),
@@ -47,6 +48,9 @@ fn every_key_is_read() {
             Exclusion::Time,
             Exclusion::Outlying,
         ],
+        people: Some("people.csv".into()),
+        subgroups: vec!["expertise".into()],
+        covariates: vec!["age".into()],
     };
     assert_eq!(section.unwrap(), expected);
     assert!(with("[analysis]\ndeclared = 2026-11-21\nanswers_known = true").unwrap().answers_known);
