@@ -12,10 +12,10 @@ use crate::terminal::progress::Step;
 use crate::{machine, source_digests};
 use anyhow::{Context, Result};
 use isostudy_bench::Plan;
+use isostudy_design::Configuration;
 use isostudy_design::config::Look;
 use isostudy_design::record::{BenchRun, MeshRecord, Purpose};
 use isostudy_design::sweep::{Case, Sweep, Swept};
-use isostudy_design::{Configuration, Study};
 use isostudy_extract::{Execution, Extractor};
 use isostudy_inference::cases::{SweepFound, SweepSums};
 use isostudy_report::{CaseMesh, CaseTimes, LongFrame, case_meshes, case_times, measured_cases, timed_cases};
@@ -344,15 +344,4 @@ fn columns(sweep: &Sweep<'_>) -> Vec<[bool; 3]> {
         ]
     };
     (0..sweep.section.settings.len()).map(kinds).collect()
-}
-
-/// The study of a case, by the places that a measuring process is told.
-///
-/// # Errors
-/// If the study has no such case.
-pub(super) fn study_of_case(study: &Study, pair: usize, number: u64) -> Result<(Study, Configuration)> {
-    let sweep = study.sweep().with_context(|| format!("{}: there is no [sweep]", study.path.display()))?;
-    let of = sweep.pairs.get(pair).filter(|of| number < of.cases).context("there is no such case")?;
-    let case = sweep.case(of, number);
-    Ok((sweep.study_of(of, &case.settings)?, of.configuration.clone()))
 }

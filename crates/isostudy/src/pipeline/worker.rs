@@ -1,7 +1,6 @@
 //! Measuring processes: the command line that starts one, the run that drives it, and what it does itself.
 
 use super::Pipeline;
-use super::cases::study_of_case;
 use crate::fields::Fields;
 use crate::input;
 use crate::measured::{Clock, asked};
@@ -228,6 +227,17 @@ pub(super) fn swept<'s>(study: &'s Study, section: &ThreadSweepSection) -> Resul
         }
     }
     Ok(swept)
+}
+
+/// The study of a case, by the places that a measuring process is told.
+///
+/// # Errors
+/// If the study has no such case.
+fn study_of_case(study: &Study, pair: usize, number: u64) -> Result<(Study, Configuration)> {
+    let sweep = study.sweep().with_context(|| format!("{}: there is no [sweep]", study.path.display()))?;
+    let of = sweep.pairs.get(pair).filter(|of| number < of.cases).context("there is no such case")?;
+    let case = sweep.case(of, number);
+    Ok((sweep.study_of(of, &case.settings)?, of.configuration.clone()))
 }
 
 /// The measuring process: answers requests on standard input until there are no more.
