@@ -10,8 +10,11 @@ wanted=(description license readme documentation keywords categories rust_versio
 
 target=$(cargo metadata --format-version 1 --no-deps --locked | python3 -c 'import json, sys; print(json.load(sys.stdin)["target_directory"])')
 work=$target/packages
-rm -rf "$work/clone" "$work/empty" "$work/build/package"
+rm -rf "$work/clone" "$work/build/package"
 mkdir -p "$work"
+# Where no other manifest is above.
+outside=$(mktemp -d)
+trap 'rm -r "$outside"' EXIT
 git clone --quiet --no-hardlinks . "$work/clone"
 cd "$work/clone"
 
@@ -42,21 +45,21 @@ version=$(cargo metadata --format-version 1 --no-deps --locked | python3 -c '
 import json, sys
 print(next(p["version"] for p in json.load(sys.stdin)["packages"] if p["name"] == "isostudy-extract"))')
 for name in "${library[@]}"; do
-  tar -xzf "$work/build/package/$name-$version.crate" -C "$work/build/package"
-  for file in README.md LICENSE-MIT LICENSE-APACHE; do test -s "$work/build/package/$name-$version/$file"; done
+  tar -xzf "$work/build/package/$name-$version.crate" -C "$outside"
+  for file in README.md LICENSE-MIT LICENSE-APACHE; do test -s "$outside/$name-$version/$file"; done
 done
-extract=$work/build/package/isostudy-extract-$version
+extract=$outside/isostudy-extract-$version
 for file in docs/engine.md docs/lod.md examples/endless.rs examples/dig.rs examples/browser/src/ground.rs; do
   test -s "$extract/$file"
 done
+test -s "$outside/isostudy-ffi-$version/include/isostudy.h"
 
 # A game's first step: an empty crate, and one `cargo add`.
-cargo new --quiet --lib --vcs none "$work/empty"
-cd "$work/empty"
+cargo new --quiet --lib --vcs none "$outside/empty"
+cd "$outside/empty"
 {
-  echo '[workspace]'
   echo '[patch.crates-io]'
-  for name in "${library[@]}"; do echo "$name = { path = \"$work/build/package/$name-$version\" }"; done
+  for name in "${library[@]}"; do echo "$name = { path = \"$outside/$name-$version\" }"; done
 } >>Cargo.toml
 cargo add --quiet --path "$extract"
 sed -n 's|^//! \{0,1\}||p' "$extract/src/lib.rs" >src/front.md
@@ -71,9 +74,9 @@ cargo test --quiet --doc --target-dir "$work/build"
 
 # The whole documentation, and the programs that a game reads. `cargo doc` stops at the first link that leads nowhere.
 cd "$extract"
-printf '[workspace]\n[patch.crates-io]\n' >>Cargo.toml
+printf '[patch.crates-io]\n' >>Cargo.toml
 for name in "${library[@]}"; do
-  test "$name" = isostudy-extract || echo "$name = { path = \"$work/build/package/$name-$version\" }"
+  test "$name" = isostudy-extract || echo "$name = { path = \"$outside/$name-$version\" }"
 done >>Cargo.toml
 RUSTDOCFLAGS="-D warnings" cargo doc --quiet --no-deps --target-dir "$work/build"
 cargo check --quiet --examples --target-dir "$work/build"

@@ -547,7 +547,7 @@ impl ChunkExtractor {
         match (&self.whole, &self.world.place) {
             (Some(whole), _) => Ok(whole.window(cells)?),
             (None, Place::Endless(grid)) => {
-                let grid = if self.world.settings.relative { grid.from_origin() } else { *grid };
+                let grid = if self.world.settings.relative { grid.at_origin() } else { *grid };
                 Ok(Lattice::endless(self.how.arrangement, &grid, cells)?)
             }
             (None, Place::Box(grid)) => Ok(grid.lattice(self.how.arrangement)?.window(cells)?),

@@ -105,7 +105,7 @@ impl Grid {
     }
 
     /// The same cubes, with a corner at 0.
-    pub(crate) fn from_origin(self) -> Self {
+    pub(crate) fn at_origin(self) -> Self {
         Self { origin: [0.0; 3], ..self }
     }
 

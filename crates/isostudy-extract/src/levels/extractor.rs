@@ -433,7 +433,7 @@ impl LevelExtractor {
     /// The grid that chunks of a level are extracted in.
     fn frame(&self, level: u32) -> Result<Grid, LevelError> {
         let grid = self.grid_of(level)?;
-        Ok(if self.settings.relative { grid.from_origin() } else { grid })
+        Ok(if self.settings.relative { grid.at_origin() } else { grid })
     }
 
     fn grid_of(&self, level: u32) -> Result<Grid, LevelError> {
