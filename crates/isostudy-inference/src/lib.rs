@@ -14,6 +14,7 @@
 
 pub mod agreement;
 pub mod answered;
+pub mod attributes;
 pub mod audit;
 pub mod ballots;
 pub mod cases;

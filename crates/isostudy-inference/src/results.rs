@@ -4,6 +4,7 @@ pub mod conclusions;
 
 use crate::agreement::Agreement;
 use crate::answered::Answered;
+use crate::attributes::{Attributed, attributed};
 use crate::audit::{self, audit};
 use crate::ballots::{ALL_METHODS, BallotGroup};
 use crate::decision::{Front, ObjectCandidates, Pick, candidates, fronts, picks};
@@ -147,6 +148,8 @@ pub struct Preferences<'a> {
     pub audit: Vec<audit::Report>,
     /// Answers by the screen that they were given on.
     pub screens: Vec<Compared>,
+    /// Whether worths go with what is known of people; none where the study names no column of them.
+    pub attributed: Vec<Attributed<'a>>,
     /// What was found.
     pub conclusions: Conclusions,
 }
@@ -296,6 +299,7 @@ impl<'a> Base<'a> {
             contrasts: glance::rows(study, &hypotheses),
             omnibus: study.map_or_else(Vec::new, |study| omnibus::tests(study, &declared)),
             screens: screens::compared(responses),
+            attributed: attributed(study, responses, groups),
             study,
             responses,
             excluded,

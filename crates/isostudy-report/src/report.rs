@@ -5,6 +5,7 @@
 //! answers without a study, get other sentences.
 
 mod asked;
+mod attributes;
 mod checks;
 mod decision;
 mod declaration;
@@ -272,8 +273,12 @@ impl Builder {
         }
         let mut scale = self.figures(&["worths"]);
         scale.extend(worths::findings(evidence));
+        if let Some(preferences) = evidence.preferences {
+            let found = attributes::findings(&preferences.attributed, evidence.rules().level);
+            scale.extend(found.into_iter().map(Block::Finding));
+        }
         self.section("worths", "How much each is liked, on one scale", scale);
-        self.add_tables(&["scale", "differences", "fit", "worths", "models"]);
+        self.add_tables(&["scale", "differences", "subgroups", "covariates", "fit", "worths", "models"]);
         let mut glance = self.figures(&["contrasts"]);
         glance.extend(preference::findings(evidence));
         self.section("preferences", "What was preferred to what", glance);

@@ -3,6 +3,7 @@
 mod accuracy;
 pub(crate) mod agreement;
 mod answers;
+pub(crate) mod attributes;
 pub(crate) mod audit;
 pub(crate) mod benchmark;
 pub(crate) mod cases;
@@ -62,6 +63,7 @@ pub(crate) fn of_preferences(preferences: &Preferences<'_>) -> Vec<Table> {
     tables.extend(preferences.study.map(|study| omnibus::omnibus(study, &preferences.omnibus)));
     tables.extend(models::model_tables(&preferences.models, preferences.responses.sides_recorded));
     tables.extend(scale::tables(&preferences.scales));
+    tables.extend(attributes::tables(&preferences.attributed));
     tables.extend(preferences.study.map(|study| agreement::agreement(study, &preferences.agreement)));
     tables.extend([
         agreement::respondents(&preferences.respondents, preferences.excluded, shown_ms),
