@@ -8,23 +8,26 @@
 //! In every contrast the first property is ahead by the same number of logits. Each person deviates by an own amount for
 //! each arrangement, each clustering and each method that is compared as one, and so does each object, for everybody; two
 //! properties' deviations differ by the given standard deviation. The tests are about the study's own objects: a preference that is there on these alone is
-//! found as well. Answers follow Davidson's model, with a bonus for the left side: who sees which side comes from the forms.
+//! found as well. Answers follow Davidson's model, or that of another [`Way`] to ask, with a bonus for the left side: who sees which side
+//! comes from the forms.
 //! Controls, repeats and training are left out, as in the tests. Nobody is excluded.
 
 mod scores;
 mod spread;
 #[cfg(test)]
 mod tests;
+mod ways;
 
 pub use spread::{Spread, spread_between_people};
+pub use ways::Way;
 
 use crate::series::{Part, Series};
 use isostudy_design::Level;
 use isostudy_design::Study;
 use isostudy_design::contrast::{Contrast, Family, Over, PRIMARY, contrasts, families};
 use isostudy_design::forms::{Questionnaire, Role};
-use isostudy_statistics::simulation::{davidson, draw, normal, stream};
-use isostudy_statistics::{Outcome, SignFlip, benjamini_hochberg, holm, sign_flip_of_counts};
+use isostudy_statistics::simulation::{normal, stream};
+use isostudy_statistics::{SignFlip, benjamini_hochberg, holm, sign_flip_of_counts};
 use rand::Rng;
 use scores::weights;
 use std::collections::BTreeMap;
@@ -44,6 +47,8 @@ pub struct Assumptions {
     pub object_sd: f64,
     /// Davidson's tie parameter nu: two equal items tie with chance nu / (2 + nu).
     pub ties: f64,
+    /// How people are asked. Their scores are of what an answer counts, in every way.
+    pub way: Way,
     /// Studies to simulate for each share.
     pub studies: u64,
     /// Seed; the same seed gives the same numbers on any number of threads.
@@ -368,8 +373,8 @@ impl Setting {
                     own[a] - own[b]
                 });
                 let side = side_bias * first * self.mirrored[participant];
-                let outcome = draw(davidson(ahead + person + object + side, assumptions.ties), random);
-                signs[question] = sign * Outcome::sign(outcome);
+                let counts = assumptions.way.answer(ahead + person + object + side, assumptions.ties, random);
+                signs[question] = sign * counts;
             }
             for (target, counts) in self.targets.iter().zip(&mut counts) {
                 let asked = &target.weights[block];

@@ -58,6 +58,7 @@ fn power_is_the_same_in_any_number_of_parts() {
         person_sd: 1.0,
         object_sd: 0.5,
         ties: 0.3,
+        way: power::Way::default(),
         studies: 40,
         seed: 3,
     };

@@ -1,6 +1,6 @@
 //! Power of a design: every number as a table for programs, contrasts and their kinds by participants as tables to read.
 
-use isostudy_inference::power::{Assumptions, Power, QUESTIONS};
+use isostudy_inference::power::{Assumptions, Power, QUESTIONS, Way};
 use isostudy_table::digits::number;
 use isostudy_table::{Cell, Columns, Table};
 
@@ -153,17 +153,40 @@ fn note(assumptions: &Assumptions, all: &[Power]) -> String {
     } else {
         ""
     };
+    let asked = asked(assumptions.way);
     format!(
         "Exact sign-flip test over participants at {level}, two-sided. Power is after the correction of the analysis: Holm's in each \
          family, Benjamini and Hochberg's over questions. There are {} simulated studies a share, and the Monte-Carlo standard error is at \
          most {largest:.3}. Assumed: in every contrast the first is chosen in this share of decided answers by a person who \
          does not deviate. Differences between people have standard deviation {} logits, between objects {}. Davidson's tie \
          parameter is {}. A liking for the left side is in logits as well. Rejections in favour of the other do not count. Objects are \
-         taken as they are: what is preferred on these alone is found too. Nobody is excluded.{chance} Seed {}.",
+         taken as they are: what is preferred on these alone is found too. Nobody is excluded.{asked}{chance} Seed {}.",
         assumptions.studies,
         number(assumptions.person_sd, 2),
         number(assumptions.object_sd, 2),
         number(assumptions.ties, 2),
         assumptions.seed
     )
+}
+
+/// How people are asked, where it is not the way of the questionnaire.
+fn asked(way: Way) -> &'static str {
+    match way {
+        Way::Pairs => "",
+        Way::Forced => {
+            " Asked: left or right, without \u{201c}no preference\u{201d}; the tie parameter has no part in it."
+        }
+        Way::Graded => {
+            " Asked: five steps from much better on the left to much better on the right; a score is the mean of 2, 1, 0, \u{2212}1 and \u{2212}2."
+        }
+        Way::BestOfThree => {
+            " Asked: the best of three, the third liked like the second; an answer counts where one of the two is taken."
+        }
+        Way::BestOfFour => {
+            " Asked: the best of four, two of them liked like the second; an answer counts where one of the two is taken."
+        }
+        Way::Ratings => {
+            " Asked: a rating from 1 to 7 of each of the two; a score is the mean of their differences."
+        }
+    }
 }

@@ -11,7 +11,7 @@ use crate::{answer_files, input, kept_answers, store};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use isostudy_design::Study;
-use isostudy_inference::power::{Assumptions, Spread, blank, powers, simulated, spread_between_people};
+use isostudy_inference::power::{Assumptions, Spread, Way, blank, powers, simulated, spread_between_people};
 use isostudy_inference::series::{Part, Series};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -47,6 +47,10 @@ pub(crate) struct Arguments {
     /// Davidson's tie parameter nu: two equal items tie with chance nu / (2 + nu)
     #[arg(long, value_name = "NU", value_parser = deviation, default_value_t = 0.3)]
     ties: f64,
+    /// How people are asked: pairs (left, no preference, right), forced (left, right), graded (five steps), best-of-3, best-of-4 or
+    /// ratings (each of the two from 1 to 7)
+    #[arg(long, value_name = "WAY", value_parser = way, default_value = Way::Pairs.code())]
+    way: Way,
     /// Studies to simulate for each share
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u64).range(parts::STUDIES))]
     studies: u64,
@@ -61,7 +65,7 @@ pub(crate) struct Arguments {
         long,
         value_name = "FILE",
         num_args = 1..,
-        conflicts_with_all = ["part", "participants", "shares", "side_bias", "spread", "spread_of", "object_sd", "ties", "studies", "seed"]
+        conflicts_with_all = ["part", "participants", "shares", "side_bias", "spread", "spread_of", "object_sd", "ties", "way", "studies", "seed"]
     )]
     merge: Vec<PathBuf>,
     /// Folder for tables and figure [default: results/<study id>-power]; with --part, the file to write
@@ -93,6 +97,11 @@ fn share(text: &str) -> Result<f64, String> {
 fn deviation(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if is_deviation(value) { Ok(value) } else { Err("allowed: 0 to 100".into()) }
+}
+
+fn way(text: &str) -> Result<Way, String> {
+    let known = || Way::ALL.map(Way::code).join(", ");
+    Way::of_code(text).ok_or_else(|| format!("allowed: {}", known()))
 }
 
 fn bias(text: &str) -> Result<f64, String> {
@@ -165,8 +174,19 @@ struct Simulated {
     spread: f64,
     object_sd: f64,
     ties: f64,
+    /// The code of a [`Way`]; files of pairs, and older ones, have none.
+    #[serde(default = "pairs", skip_serializing_if = "is_pairs")]
+    way: String,
     studies: u64,
     seed: u64,
+}
+
+fn pairs() -> String {
+    Way::Pairs.code().into()
+}
+
+fn is_pairs(way: &str) -> bool {
+    way == Way::Pairs.code()
 }
 
 impl From<Assumptions> for Simulated {
@@ -178,6 +198,7 @@ impl From<Assumptions> for Simulated {
             spread: of.person_sd,
             object_sd: of.object_sd,
             ties: of.ties,
+            way: of.way.code().into(),
             studies: of.studies,
             seed: of.seed,
         }
@@ -193,6 +214,7 @@ impl From<Simulated> for Assumptions {
             person_sd: of.spread,
             object_sd: of.object_sd,
             ties: of.ties,
+            way: Way::of_code(&of.way).unwrap_or_default(),
             studies: of.studies,
             seed: of.seed,
         }
@@ -209,6 +231,7 @@ impl Simulated {
                 && numbers.iter().all(|number| (1..=MOST_PEOPLE as usize).contains(number)),
             "participants: allowed: numbers from 1 to {MOST_PEOPLE} that ascend"
         );
+        ensure!(Way::of_code(&self.way).is_some(), "way: allowed: {}", Way::ALL.map(Way::code).join(", "));
         let (least, most) = parts::STUDIES.into_inner();
         ensure!(parts::STUDIES.contains(&self.studies), "studies: allowed: {least} to {most}");
         ensure!(
@@ -241,6 +264,7 @@ fn assumptions(arguments: &Arguments, study: &Study, planned: usize) -> Result<A
         person_sd: spread(arguments, study)?,
         object_sd: arguments.object_sd,
         ties: arguments.ties,
+        way: arguments.way,
         studies: arguments.studies,
         seed: arguments.seed,
     })
