@@ -53,8 +53,8 @@ def check_columns(name, types, problems):
         elif TYPES.get(found) != fitting[0]:
             problems.append(f"{name}: {column} is {found}, documented as {fitting[0]}")
     for pattern, _ in known:
-        # A study may declare no factor.
-        if pattern != "factor_*" and not fnmatch.filter(types, pattern):
+        # A study may declare no factor, and no region.
+        if not pattern.startswith(("factor_", "region")) and not fnmatch.filter(types, pattern):
             problems.append(f"{name}: there is no column {pattern}")
 
 
