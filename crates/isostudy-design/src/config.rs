@@ -3,6 +3,7 @@
 //! These types mirror the file and nothing else: paths are as written (relative to the file's own folder), numbers
 //! are unchecked. [`crate::Study::load`] turns them into something to work from.
 
+mod about;
 mod analysis;
 mod field;
 mod forms;
@@ -14,10 +15,11 @@ mod sweep;
 mod viewer;
 
 pub use crate::method::{BudgetSection, Quantity, StimulusLook};
+pub use about::{AboutKind, AboutSection, AboutTime};
 pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
 pub use field::{FieldSection, Inside, MeshSourceSection, PointKernel, PointNormals};
-pub use forms::{FormsSection, OrderRule, ShownNames, SideRule, TrainingSection};
-pub(crate) use forms::{is_english_alone, languages};
+pub use forms::{FormsSection, OrderRule, Panel, ShownNames, SideRule, TrainingSection};
+pub(crate) use forms::{is_english_alone, is_false, languages};
 pub use methods::{FactorSection, LevelSection, MethodSection, SpeltLevel};
 pub(crate) use objects::check_objects;
 pub use objects::{CameraSection, ObjectSection, RegionSection};

@@ -31,6 +31,7 @@
 //!   Latin square read alternately forwards and backwards; for squares balanced for neighbours see E. J. Williams,
 //!   Australian Journal of Scientific Research A 2 (1949).
 
+mod about;
 mod file;
 mod order;
 mod sides;
@@ -39,7 +40,9 @@ mod spoken;
 mod spread;
 mod stimuli;
 
-pub use file::{FormEntry, FormFile, KeyEntry, Stimulus};
+pub(crate) use about::texts as about_texts;
+pub use about::{AboutEntry, Answers, COMMENT};
+pub use file::{FormEntry, FormFile, KeyEntry, Quotas, Stimulus};
 pub use spoken::Language;
 
 use crate::config::{FormsSection, OrderRule, SideRule};

@@ -5,6 +5,7 @@
 //! the question's wording, of who answers, or of whether the stimuli show what they should.
 
 mod names;
+mod notices;
 mod reach;
 mod stimuli;
 
@@ -13,6 +14,7 @@ use crate::forms::{Form, Questionnaire, Role, Trial};
 use crate::study::{Comparison, Study};
 use std::collections::{BTreeMap, BTreeSet};
 
+pub use notices::notices;
 pub use reach::{Reach, reach};
 pub use stimuli::{EXPOSURE_TOLERANCE, StimulusFacts, lint_stimuli};
 

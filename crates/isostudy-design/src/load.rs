@@ -1,5 +1,6 @@
 //! From a study's file to a [`Study`]: reading, checking, and everything derived.
 
+mod about;
 mod checks;
 mod methods;
 mod texts;
@@ -57,6 +58,7 @@ impl Study {
         let comparisons = comparisons(&checker, &file, &configurations, &mut groups)?;
         check_stills(&checker, &file, &configurations)?;
         check_forms(&checker, &file, &configurations)?;
+        file.forms.as_ref().map_or(Ok(()), |forms| about::check(&checker, forms))?;
         file.analysis.check(&checker)?;
 
         let target = match target {

@@ -12,7 +12,7 @@ window.isostudyFiles = (study, session) => {
   const names = ['participant', 'form', 'order', 'stimulus', 'choice', 'rt_ms', 'answered', ...SCREEN];
   const lines = [names, ...answers.map((row) => names.map((name) => row[name] ?? ''))];
   const csv = `${lines.map((cells) => cells.join(',')).join('\r\n')}\r\n`;
-  const json = JSON.stringify({ schema: 1, study: study.study, participant, form, started, finished, answers }, null, 1);
+  const json = JSON.stringify({ schema: 1, study: study.study, participant, form, language: session.lang, started, finished, answers, about: session.told }, null, 1);
   const file = (kind, type, text) => ({ kind, type, text, name: `${study.study}-${participant}.${kind.toLowerCase()}` });
   return [file('CSV', 'text/csv', csv), file('JSON', 'application/json', json)];
 };

@@ -10,7 +10,7 @@
   // Who somebody is, as far as the address says: others in the same browser have a session of their own.
   const address = new URLSearchParams(location.search);
   const given = (name) => address.get(name) ?? undefined;
-  const WHO = study.server ? ['PROLIFIC_PID', 'STUDY_ID', 'SESSION_ID'] : ['form'];
+  const WHO = study.server ? [...new Set(study.panel.filter(Boolean))] : ['form'];
   const { text, speak, ...texts } = window.isostudyTexts(study);
   const KEY = `isostudy:${JSON.stringify([study.study, study.digest, ...WHO.map((name) => given(name) ?? null)])}`;
   // Keys are explained to those who have them.
@@ -46,6 +46,8 @@
   function heading(text) { return make('h2', { tabIndex: -1 }, text); }
 
   const loading = window.isostudyLoading(study);
+  const about = window.isostudyAbout({ text, make, say, heading, show });
+  const rights = window.isostudyRights({ study, text, make, say, heading, show, given });
   const trial = window.isostudyTrial({ study, text, loading, make, say, heading, show, touch: TOUCH });
 
   // ---- what survives a reload -------------------------------------------------------------------------------------
@@ -74,10 +76,15 @@
     if (!session || stored?.participant !== session.participant) return;
     stored.answers.forEach((theirs, i) => {
       const mine = session.answers[i];
-      if (mine && mine.choice === theirs.choice) mine.saved ||= theirs.saved; else session.answers[i] = theirs;
+      const [newer, older] = [mine?.change ?? 0, theirs.change ?? 0];
+      if (mine && newer === older && mine.choice === theirs.choice) mine.saved ||= theirs.saved;
+      else if (!mine || newer <= older) session.answers[i] = theirs;
     });
     session.trained = Math.max(session.trained, stored.trained);
     session.instructed ||= stored.instructed;
+    session.before = Math.max(session.before ?? 0, stored.before ?? 0);
+    session.after = Math.max(session.after ?? 0, stored.after ?? 0);
+    session.told = { ...stored.told, ...session.told };
   }
 
   function keep() {
@@ -254,18 +261,20 @@
         await start(form);
       } catch (error) {
         begin.disabled = false;
-        say(text(cannotBegin(error)));
+        if (error.refusal === 'full') rights.over('full', study.completion_full);
+        else say(text(whyNot(error)));
       }
     });
-    show(...parts, make('div', { className: 'row' }, begin));
+    const remove = rights.button(text('withdraw'), () => withdraw());
+    show(...parts, ...rights.facts(), make('div', { className: 'row' }, begin, rights.decline(), ...(study.server ? [remove] : [])));
     // What everybody is shown first, while this is read.
     loading.ahead(null, study.first.slice(0, 1));
   }
 
   /** The key of what to say to somebody who cannot begin. */
-  function cannotBegin(error) {
+  function whyNot(error) {
     if (error.busy) return 'crowded';
-    return { full: 'full', crowded: 'crowded', 'bad-identifier': 'bad_address' }[error.refusal] ?? 'cannot_begin';
+    return { crowded: 'crowded', 'bad-identifier': 'bad_address' }[error.refusal] ?? 'unreachable';
   }
 
   /** Buttons for the study's languages, where it has several and the address names none of them. */
@@ -286,7 +295,7 @@
     const at = new Date().toISOString();
     if (study.server) {
       const dealt = await post('api/sessions', {
-        prolific_pid: given('PROLIFIC_PID'), study_id: given('STUDY_ID'), session_id: given('SESSION_ID'),
+        lang: texts.lang(), prolific_pid: given(study.panel[0]), study_id: given(study.panel[1]), session_id: given(study.panel[2]),
       });
       session = { participant: dealt.participant, token: dealt.token, form: dealt.form, lang: texts.lang(), started: at, trained: 0, answers: [] };
       // Somebody who comes back in another browser goes on where the server's answers end.
@@ -309,27 +318,128 @@
     const { form } = session;
     const all = form.training.length + form.questions.length;
     place = null;
+    // Whoever has answered before, in another browser, was asked then.
+    if (session.answers.length === 0 && askAbout('before')) return undefined;
     if (!session.instructed) return instructions();
     place = done();
-    if (place === all) return end();
+    if (place === all) return askAbout('after') ? undefined : end();
+    return pair();
+  }
+
+  /** Asks the next question about the person, if one is left before or after the pairs. */
+  function askAbout(when) {
+    const asked = study.about.filter((one) => one.when === when);
+    const question = asked[session[when] ?? 0];
+    if (!question) return false;
+    $('progress-row').hidden = true;
+    about(question, async (value) => {
+      say('');
+      if (value !== null && !await tell(question, value)) return;
+      session[when] = (session[when] ?? 0) + 1;
+      keep();
+      next();
+    });
+    return true;
+  }
+
+  /** Keeps an answer about the person. Returns whether questions go on: somebody may not be asked any further. */
+  async function tell(question, value) {
+    const screened = (question.screens_out ?? []).some((option) => value.split(';').includes(String(option)));
+    let heard = { taken: screened ? 'screened' : 'kept' };
+    if (study.server) {
+      heard = await insist('api/about', { token: session.token, id: question.id, value });
+      if (!heard) return false;
+      say('');
+    } else {
+      session.told = { ...session.told, [question.id]: value };
+    }
+    if (heard.taken === 'kept') return true;
+    gone();
+    rights.over(heard.taken, heard.completion);
+    return false;
+  }
+
+  /** Nothing of this session is left here. */
+  function gone() {
+    localStorage.removeItem(KEY);
+    session = null;
+    place = null;
+    $('progress-row').hidden = true;
+  }
+
+  /** Somebody would like to stop. */
+  function stop() {
+    place = null;
+    $('progress-row').hidden = true;
+    const leaveAnswers = async () => {
+      if (study.server) {
+        const { token } = session;
+        if (!await send()) return;
+        gone();
+        show(heading(text('thank_you')), make('p', { className: 'text' }, text('stopped')), ...rights.receipt(token), ...rights.completion(study.completion_withdrawn));
+      } else {
+        show(heading(text('thank_you')), make('p', { className: 'text' }, text('stopped')), make('div', { className: 'row' }, ...downloads(session)));
+      }
+    };
+    const remove = () => (study.server ? deleted(session.token.slice(0, 16)) : leaveNothing());
+    rights.stop(next, leaveAnswers, remove);
+  }
+
+  function leaveNothing() {
+    gone();
+    rights.over('withdrawn', study.completion_withdrawn);
+  }
+
+  /** Asks for a receipt code, and deletes what belongs to it. */
+  function withdraw() {
+    place = null;
+    $('progress-row').hidden = true;
+    rights.withdraw(deleted);
+  }
+
+  /** Has the answers of a receipt deleted. */
+  async function deleted(receipt) {
+    const own = session && receipt.replace(/[^0-9a-z]/gi, '').toLowerCase() === session.token?.slice(0, 16);
+    try {
+      // Answers on their way must not arrive afterwards.
+      if (own) await sending;
+      await post('api/withdraw', { receipt });
+      if (own || !session) leaveNothing(); else rights.over('withdrawn');
+    } catch (error) {
+      if (own && error.refusal === 'unknown-token') leaveNothing();
+      else say(text(error.final ? 'withdraw_unknown' : 'unreachable'));
+    }
+  }
+
+  /** Shows the next pair, or the last one again to somebody who went back to it. */
+  function pair(back = false) {
+    const { form } = session;
+    const at = done() - (back ? 1 : 0);
+    place = done();
     $('progress-row').hidden = false;
     const codes = [...form.training, ...form.questions];
-    const practice = place < form.training.length;
-    const question = place - form.training.length;
+    const practice = at < form.training.length;
+    const question = at - form.training.length;
     // What does not count is not in the bar either.
     $('progress').hidden = practice;
     $('progress').max = form.questions.length;
     $('progress').value = Math.max(question, 0);
     $('progress-text').textContent = practice ? text('does_not_count') : text('progress', { number: question + 1, total: form.questions.length });
-    const title = practice ? text('practice', { number: place + 1 }) : text('question', { number: question + 1 });
-    leave = trial(codes[place], title, codes.slice(place + 1, place + 1 + AHEAD), (choice, times, screen) => {
+    const title = practice ? text('practice', { number: at + 1 }) : text('question', { number: question + 1 });
+    // What was answered in another browser is not known here.
+    const last = session.answers[question - 1];
+    $('back').hidden = !study.revises || back || practice || !last?.choice;
+    for (const name of ['back', 'stop']) $(name).textContent = text(name);
+    leave = trial(codes[at], title, codes.slice(at + 1, at + 1 + AHEAD), (choice, times, screen) => {
       merge();
       if (place !== done()) {
         say(text('other_tab'));
       } else {
         say('');
+        const answer = { order: at + 1, stimulus: codes[at], choice, ...times, screen };
         if (practice) session.trained += 1;
-        else session.answers.push({ order: place + 1, stimulus: codes[place], choice, ...times, screen });
+        else if (back) session.answers[question] = { ...answer, change: (session.answers[question].change ?? 0) + 1 };
+        else session.answers.push(answer);
         keep();
       }
       if (study.server) send();
@@ -377,13 +487,7 @@
       if (!await send()) return;
       const reply = await insist('api/finish', { token: session.token });
       if (!reply) return;
-      const parts = [heading(text('thank_you')), make('p', { className: 'text' }, text('all_saved'))];
-      if (reply.completion && /^https:\/\//.test(reply.completion)) {
-        parts.push(make('div', { className: 'row' }, make('a', { href: reply.completion, className: 'button main', rel: 'noreferrer' }, text('finish'))));
-      } else if (reply.completion) {
-        parts.push(make('p', {}, `${text('completion_code')} `, make('span', { className: 'code' }, reply.completion)));
-      }
-      show(...parts);
+      show(heading(text('thank_you')), make('p', { className: 'text' }, text('all_saved')), ...rights.completion(reply.completion), ...rights.receipt(session.token));
       say('');
     } catch (error) {
       if (!error.conflict) throw error;
@@ -394,8 +498,8 @@
 
   /** Links to a session's answers as files. */
   function downloads(of) {
-    return window.isostudyFiles(study, of).map(({ kind, type, name, text }) => {
-      const link = make('a', { className: kind === 'CSV' ? 'button main' : 'button', download: name, href: URL.createObjectURL(new Blob([text], { type })) }, text('download', { kind }));
+    return window.isostudyFiles(study, of).map(({ kind, type, name, text: content }) => {
+      const link = make('a', { className: kind === 'CSV' ? 'button main' : 'button', download: name, href: URL.createObjectURL(new Blob([content], { type })) }, text('download', { kind }));
       link.addEventListener('click', () => {
         of.downloaded = true;
         keep();
@@ -407,7 +511,11 @@
   // ---- go ---------------------------------------------------------------------------------------------------------
 
   texts.begin(given('lang'), session?.lang, ...navigator.languages);
-  if (session) {
+  $('stop').addEventListener('click', stop);
+  $('back').addEventListener('click', () => pair(true));
+  if (study.server && address.has('withdraw')) {
+    withdraw();
+  } else if (session) {
     if (study.server) send();
     next();
   } else {

@@ -62,6 +62,8 @@
         ['Participants who began', stand.started], ['who finished', stand.finished], ['answering now', stand.answering],
         ['Answers', stand.answers], ['in the last minute', stand.per_minute[59]],
         ['Participants a form', `${Math.min(...live)} to ${Math.max(...live)}`],
+        ['People who withdrew', stand.departures.withdrawn], ['who were screened out', stand.departures.screened_out],
+        ['who came when there were enough like them', stand.departures.full],
       ];
       $('numbers').replaceChildren(...numbers.flatMap(([name, value]) => {
         const [term, text] = [document.createElement('dt'), document.createElement('dd')];

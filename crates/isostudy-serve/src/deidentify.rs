@@ -1,6 +1,7 @@
 //! Answers that can be given to others.
 
 use crate::export::Given;
+use crate::journal::Departures;
 use crate::record::Answer;
 use crate::screen::Screen;
 use isostudy_design::forms::FormFile;
@@ -9,19 +10,24 @@ use std::collections::BTreeMap;
 /// The same answers, their participants renamed `p1`, `p2`, and so on by their names, which are random, so that neither
 /// names nor order tell who came when.
 pub fn deidentified(given: &[Given]) -> Vec<Given> {
-    let mut names: BTreeMap<&str, usize> =
-        given.iter().map(|given| (given.participant.as_str(), 0)).collect();
-    names.values_mut().enumerate().for_each(|(place, number)| *number = place + 1);
-    let people = names.len();
+    let names = names(given);
     let renamed = |given: &Given| {
-        let number = names[given.participant.as_str()];
         let screen = given.answer.screen.map(Screen::rounded);
         let answer = Answer { screen, ..given.answer.clone() };
-        Given { participant: name(number, people), answer, ..*given }
+        Given { participant: names[&given.participant].clone(), answer, ..*given }
     };
     let mut shared: Vec<Given> = given.iter().map(renamed).collect();
     shared.sort_by(|a, b| (&a.participant, a.answer.order).cmp(&(&b.participant, b.answer.order)));
     shared
+}
+
+/// What each participant is called for others.
+pub fn names(given: &[Given]) -> BTreeMap<String, String> {
+    let mut names: BTreeMap<String, String> =
+        given.iter().map(|given| (given.participant.clone(), String::new())).collect();
+    let people = names.len();
+    names.values_mut().enumerate().for_each(|(place, shared)| *shared = name(place + 1, people));
+    names
 }
 
 /// `p07`: of so many people, all as wide.
@@ -30,8 +36,16 @@ fn name(number: usize, people: usize) -> String {
     format!("p{number:0width$}")
 }
 
-/// What the columns of the shared answers mean, in Markdown. The digests are of the forms when the first answer came, and now.
-pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize, answers: usize) -> String {
+/// What the columns of the shared answers mean, in Markdown. The digests are of the forms when the first answer came, and now. `about` says
+/// what was merged in `about.csv`, where there is one.
+pub fn codebook(
+    file: &FormFile,
+    (then, now): (&str, &str),
+    participants: usize,
+    answers: usize,
+    departures: Departures,
+    about: Option<&str>,
+) -> String {
     let [left, none, right] = file.choices.each_ref().map(|text| escaped(text));
     let changed = if then == now {
         String::new()
@@ -45,10 +59,20 @@ pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize,
         _ => format!("`{}` to `{}`", name(1, participants), name(participants, participants)),
     };
     let count = |number: usize, word: &str| format!("{number} {word}{}", if number == 1 { "" } else { "s" });
+    let Departures { withdrawn, screened_out, full } = departures;
+    let gone = if departures == Departures::default() {
+        String::new()
+    } else {
+        format!(
+            "People of whom nothing is kept: {withdrawn} withdrew, {screened_out} were screened out, {full} came when enough \
+             people had said the same of themselves.\n\n"
+        )
+    };
+    let about = about.map_or_else(String::new, |said| format!("{}{said}\n", about_table(file)));
     format!(
         "# Codebook\n\n\
          Answers to \"{title}\" (study `{study}`, forms {now}): {answers} of {participants}, in `answers.csv`.\n\n{changed}\
-         Participants are numbered at random. No name, address, panel identifier or date is in this set.\n\n\
+         Participants are numbered at random. No name, address, panel identifier or date is in this set.\n\n{gone}\
          | column | meaning | values |\n|---|---|---|\n\
          | `participant` | who answered | {people} |\n\
          | `form` | number of the form | 1 to {forms} |\n\
@@ -68,7 +92,7 @@ pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize,
          | `input` | what the answer was given with | `mouse`, `touch`, `pen`, `keyboard` |\n\
          | `dropped` | frames that the browser did not show | from 0 |\n\
          | `hidden_ms` | time for which the page was out of sight, within `rt_ms` | milliseconds |\n\
-         | `shown_as` | how the pair was stored | `gif`, `mp4`, `webm` |\n",
+         | `shown_as` | how the pair was stored | `gif`, `mp4`, `webm` |\n{about}",
         answers = count(answers, "answer"),
         participants = count(participants, "participant"),
         title = escaped(&file.title),
@@ -77,6 +101,19 @@ pub fn codebook(file: &FormFile, (then, now): (&str, &str), participants: usize,
         prompt = escaped(&file.prompt),
         loop_ms = file.loop_ms,
     )
+}
+
+/// The columns of `about.csv`.
+fn about_table(file: &FormFile) -> String {
+    let texts = file.spoken().into_iter().next().map(|first| first.texts).unwrap_or_default();
+    let mut table = String::from(
+        "\n`about.csv` has what people said about themselves.\n\n| column | question |\n|---|---|\n",
+    );
+    for question in file.about.iter().filter(|question| !question.is_free()) {
+        let asked = texts.get(&question.text).map_or_else(String::new, |text| escaped(text));
+        table += &format!("| `{}` | {asked} |\n", question.id);
+    }
+    table + "\n"
 }
 
 /// Without what Markdown would read as mark-up, as a table's row or as HTML.
@@ -104,7 +141,14 @@ mod tests {
         let given = |participant: &str, order| Given {
             participant: participant.into(),
             form: 1,
-            answer: Answer { order, stimulus: "tani".into(), choice: Choice::L, rt_ms: 900, screen: None },
+            answer: Answer {
+                order,
+                stimulus: "tani".into(),
+                choice: Choice::L,
+                rt_ms: 900,
+                screen: None,
+                change: 0,
+            },
         };
         let shared = deidentified(&[given("c0", 1), given("c0", 2), given("0a", 1), given("77", 1)]);
         let found: Vec<(&str, u32)> =
@@ -115,20 +159,10 @@ mod tests {
 
     fn file() -> FormFile {
         FormFile {
-            schema: 1,
-            study: "trial".into(),
             title: "<script> & *stars*".into(),
             prompt: "Which\nof two?".into(),
             choices: ["Left | a", "[None](http://example.org)", "Right"].map(Into::into),
-            choices_stacked: None,
-            min_surface_px: None,
-            languages: vec!["en".into()],
-            texts: std::collections::BTreeMap::new(),
-            consent: String::new(),
-            instructions: String::new(),
-            loop_ms: 100,
-            page_scale: 1,
-            forms: Vec::new(),
+            ..crate::export::tests::empty_file()
         }
     }
 
@@ -145,20 +179,21 @@ mod tests {
                         choice: Choice::L,
                         rt_ms: 900,
                         screen: None,
+                        change: 0,
                     },
                 })
                 .collect();
             let shared = deidentified(&given);
             let [first, last] = [shared.first(), shared.last()].map(|of| &of.unwrap().participant);
             let said = if first == last { format!("`{first}`") } else { format!("`{first}` to `{last}`") };
-            let text = codebook(&file(), ("d", "d"), people, people);
+            let text = codebook(&file(), ("d", "d"), people, people, Departures::default(), None);
             assert!(text.contains(&format!("| who answered | {said} |")), "{text}");
         }
     }
 
     #[test]
     fn a_text_of_the_study_is_no_mark_up() {
-        let text = codebook(&file(), ("d", "d"), 1, 1);
+        let text = codebook(&file(), ("d", "d"), 1, 1, Departures::default(), None);
         assert!(text.contains("&lt;script> &amp; \\*stars\\*"), "{text}");
         assert!(text.contains("Left \\| a, `NP` \\[None\\](http://example.org), `R` Right"), "{text}");
         assert!(text.contains("answer to \"Which of two?\""), "{text}");

@@ -1,7 +1,7 @@
 //! Files that the page lets participants download where there is no server.
 
 use crate::export::Given;
-use crate::record::{Answer, Choice};
+use crate::record::{About, Answer, Choice};
 use crate::screen;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -62,6 +62,9 @@ impl Cell {
 struct File {
     study: String,
     answers: Vec<Row>,
+    participant: Option<String>,
+    /// What people said of themselves; no earlier version asked.
+    about: Option<About>,
 }
 
 /// Why a download cannot be read.
@@ -126,6 +129,19 @@ pub fn read(text: &str, study: &str) -> Result<Vec<Given>, DownloadError> {
         rows(text.trim_start_matches('\u{feff}'))?
     };
     rows.into_iter().map(given).collect()
+}
+
+/// What a download says of the person who answered: the name in the answers, and answers by the ids of the questions. CSV says nothing of
+/// people.
+///
+/// # Errors
+/// [`DownloadError`].
+pub fn read_about(text: &str) -> Result<Option<(String, About)>, DownloadError> {
+    if !text.trim_start().starts_with('{') {
+        return Ok(None);
+    }
+    let File { participant, about, .. } = serde_json::from_str(text)?;
+    Ok(participant.zip(about))
 }
 
 /// The columns that every download has had.
@@ -198,7 +214,7 @@ fn given(row: Row) -> Result<Given, DownloadError> {
     let Row { participant, form, order, stimulus, choice, rt_ms, .. } = row;
     let screen = screen::of_cells(&cells.each_ref().map(Cell::text))
         .map_err(|why| DownloadError::Screen { order, why })?;
-    Ok(Given { participant, form, answer: Answer { order, stimulus, choice, rt_ms, screen } })
+    Ok(Given { participant, form, answer: Answer { order, stimulus, choice, rt_ms, screen, change: 0 } })
 }
 
 /// Two files that contradict each other: participant and place.

@@ -106,8 +106,35 @@ pub fn csv<T: Serialize>(lines: &[T], header: &[&str]) -> String {
 pub const HEADER: [&str; 21] = isostudy_responses::LONG_WRITTEN_WITH_SCREENS;
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+    use isostudy_design::forms::FormFile;
+
+    /// A study that shows nothing, in English.
+    pub(crate) fn empty_file() -> FormFile {
+        FormFile {
+            schema: 1,
+            study: "trial".into(),
+            title: "Trial".into(),
+            prompt: "Which?".into(),
+            choices: ["Left", "None", "Right"].map(Into::into),
+            choices_stacked: None,
+            min_surface_px: None,
+            languages: vec!["en".into()],
+            texts: std::collections::BTreeMap::new(),
+            consent: "Yes".into(),
+            instructions: "Look".into(),
+            about: Vec::new(),
+            contact: None,
+            ethics: None,
+            least_age: None,
+            retention_days: None,
+            go_back: false,
+            loop_ms: 100,
+            page_scale: 1,
+            forms: Vec::new(),
+        }
+    }
 
     #[test]
     fn nothing_becomes_a_formula_and_everything_comes_back() {

@@ -8,17 +8,23 @@
 //! Somebody is written down with the first answer; until then a form dealt is known in memory alone. All files, and the folder
 //! if it is made here, are their owner's alone. One process changes them at a time (`lock`); others may read meanwhile.
 
+mod about;
+mod change;
 mod copy;
+mod departures;
 mod files;
 mod place;
 mod seal;
 mod summary;
 mod thread;
 mod waiting;
+mod withdraw;
 
 #[cfg(test)]
 mod tests;
 
+pub(crate) use about::Taken;
+pub use departures::Departures;
 #[cfg(test)]
 pub(crate) use files::kept_on;
 pub use files::{Kept, kept};
@@ -30,9 +36,9 @@ pub use thread::{Handle, Keeper, Unsaved, start};
 
 use crate::export::Given;
 use crate::machine::{Machine, Owned, System};
-use crate::record::{Answer, Choice, Identifiers, Refusal, check, first_place};
+use crate::record::{About, Answer, Choice, Identifiers, Refusal, check, first_place};
 use copy::Copied;
-use isostudy_design::forms::{FormEntry, FormFile};
+use isostudy_design::forms::{AboutEntry, FormEntry, FormFile, Quotas};
 use place::Place;
 use rusqlite::{Connection, params};
 use seal::{Seal, Sealed};
@@ -166,6 +172,7 @@ struct Person {
     choices: Vec<Choice>,
     last_ms: i64,
     finished: bool,
+    about: About,
 }
 
 /// The journal of one study; one process has it at a time.
@@ -175,12 +182,19 @@ pub struct Journal {
     answers: Connection,
     identities: Connection,
     forms: Vec<FormEntry>,
+    languages: Vec<String>,
+    questions: Vec<AboutEntry>,
+    quotas: Quotas,
+    /// Whether answers may be changed.
+    go_back: bool,
     people: Vec<Person>,
     by_token: HashMap<String, usize>,
     by_identifiers: HashMap<Identifiers, usize>,
     waiting: Waiting,
     held: Held,
     uncounted: bool,
+    /// Whether the files may hold what was deleted.
+    remnants: bool,
     seal: Seal,
     place: Place,
     /// Held as long as the journal is.
@@ -232,6 +246,7 @@ impl Journal {
         if whole {
             journal.forget(&nobodys).map_err(database)?;
         }
+        journal.scrub_left()?;
         journal.seal().and_then(|()| journal.seal.sync()).map_err(failed)?;
         // The name of `count` too: without it nobody could tell what is missing.
         journal.machine.sync_folder(folder).map_err(failed)?;
@@ -267,12 +282,17 @@ impl Journal {
             answers,
             identities,
             forms: file.forms.clone(),
+            languages: file.languages.clone(),
+            questions: file.about.clone(),
+            quotas: Quotas::default(),
+            go_back: file.go_back,
             people: Vec::new(),
             by_token: HashMap::new(),
             by_identifiers: HashMap::new(),
             waiting: Waiting::default(),
             held: Held::default(),
             uncounted: false,
+            remnants: false,
             seal,
             place: Place::default(),
             _lock: Arc::clone(lock),
@@ -297,6 +317,18 @@ impl Journal {
     /// Whether there were answers and no count of them at the start: nobody can tell whether all are there.
     pub fn is_uncounted(&self) -> bool {
         self.uncounted
+    }
+
+    /// Takes no more people than this from now on.
+    pub fn limit(&mut self, quotas: Quotas) {
+        self.quotas = quotas;
+    }
+
+    /// Writes down how much there will be, where that is less than there was: before it is deleted, so that a machine that stops in
+    /// between does not take for lost what somebody wanted gone.
+    fn seal_less(&mut self) -> std::io::Result<()> {
+        let less = self.seal.less(self.held);
+        less.map_or(Ok(()), |less| self.seal.write(less).and_then(|()| self.seal.sync()))
     }
 
     /// Writes down how much there is, for whoever opens the folder next.
@@ -325,6 +357,7 @@ impl Journal {
         let transaction = self.identities.unchecked_transaction()?;
         for name in names {
             transaction.execute("DELETE FROM identities WHERE participant = ?1", [name])?;
+            transaction.execute("DELETE FROM about WHERE participant = ?1", [name])?;
         }
         transaction.commit()
     }
@@ -348,6 +381,7 @@ impl Journal {
                 choices: Vec::new(),
                 last_ms: row.get(4)?,
                 finished,
+                about: About::new(),
             };
             by_number.insert(number, self.people.len());
             self.by_token.insert(row.get(2)?, self.people.len());
@@ -363,16 +397,23 @@ impl Journal {
                 self.people[person].choices.push(choice);
             }
         }
-        let by_name: HashMap<&str, usize> =
-            self.people.iter().enumerate().map(|(i, person)| (person.name.as_str(), i)).collect();
+        let by_name: HashMap<String, usize> =
+            self.people.iter().enumerate().map(|(i, person)| (person.name.clone(), i)).collect();
         let (mut found, mut nobodys) = (HashMap::new(), Vec::new());
         self.held = Held { participants: self.people.len() as u64, ..Held::default() };
         for (name, identifiers) in files::identities(&self.identities)? {
-            if let Some(&person) = by_name.get(name.as_str()) {
+            if let Some(&person) = by_name.get(&name) {
                 found.insert(identifiers, person);
                 self.held.identities += 1;
             } else {
                 nobodys.push(name);
+            }
+        }
+        for (name, about) in files::about(&self.identities)? {
+            match by_name.get(&name) {
+                Some(&person) => self.people[person].about = about,
+                None if nobodys.contains(&name) => {}
+                None => nobodys.push(name),
             }
         }
         self.by_identifiers = found;
@@ -382,7 +423,12 @@ impl Journal {
 
     /// Deals one of the forms with the fewest participants to somebody new, which one by chance, so that forms do not tell
     /// who came when; whom a panel has sent before gets the same form again.
-    pub(crate) fn begin(&mut self, given: Identifiers, now_ms: i64) -> Result<Dealt, Refusal> {
+    pub(crate) fn begin_in(
+        &mut self,
+        language: Option<String>,
+        given: Identifiers,
+        now_ms: i64,
+    ) -> Result<Dealt, Refusal> {
         given.check()?;
         // Without a session of the panel's own, two people could be taken for one.
         let known = given.prolific_pid.is_some() && given.session_id.is_some();
@@ -393,7 +439,7 @@ impl Journal {
         if let Some(newcomer) = self.waiting.iter().find(|one| known && one.identifiers == given) {
             return Ok(self.welcome(newcomer));
         }
-        if self.people.len() >= MOST {
+        if self.people.len() >= MOST || self.is_closed(now_ms) {
             return Err(Refusal::Full);
         }
         let mut load = vec![0_usize; self.forms.len()];
@@ -403,17 +449,28 @@ impl Journal {
         self.people.iter().for_each(|person| count(person.form, person.last_ms, person.finished));
         self.waiting.iter().for_each(|newcomer| count(newcomer.form, newcomer.since_ms, false));
         let least = load.iter().min().copied().unwrap_or_default();
+        if self.quotas.per_form.is_some_and(|most| least >= most as usize) {
+            return Err(Refusal::Full);
+        }
         let free: Vec<usize> = (1..=load.len()).filter(|form| load[form - 1] == least).collect();
         let newcomer = Newcomer {
             name: hex(&*self.machine, 8),
             token: hex(&*self.machine, 16),
             form: free[self.random_index(free.len())],
             identifiers: given,
+            language: language.filter(|lang| self.languages.contains(lang)),
+            about: About::new(),
             since_ms: now_ms,
         };
         let dealt = self.welcome(&newcomer);
         self.waiting.add(newcomer)?;
         Ok(dealt)
+    }
+
+    /// As [`begin_in`](Self::begin_in), in no language that is known.
+    #[cfg(test)]
+    pub(crate) fn begin(&mut self, given: Identifiers, now_ms: i64) -> Result<Dealt, Refusal> {
+        self.begin_in(None, given, now_ms)
     }
 
     /// One of so many, by chance.
@@ -445,13 +502,15 @@ impl Journal {
 
     /// Writes down somebody who waits: a first answer has come.
     fn write_down(&mut self, token: &str) -> rusqlite::Result<()> {
-        let Some(newcomer) = self.waiting.take(token) else { return Ok(()) };
-        let Newcomer { name, token, form, identifiers, since_ms } = newcomer;
+        let Some(newcomer) = self.waiting.take(token).cloned() else { return Ok(()) };
+        let Newcomer { name, token, form, identifiers, language, about, since_ms } = &newcomer;
+        if !identifiers.is_empty() || !about.is_empty() {
+            self.change_identities()?;
+        }
+        for (id, value) in about {
+            self.add_about(name, id, value)?;
+        }
         if !identifiers.is_empty() {
-            // One transaction, and one sync, for all of a batch.
-            if !self.answers.is_autocommit() && self.identities.is_autocommit() {
-                self.identities.execute_batch("BEGIN IMMEDIATE")?;
-            }
             // There already if the answers' part of a batch failed.
             let add = "INSERT OR REPLACE INTO identities VALUES (?1, ?2, ?3, ?4)";
             let Identifiers { prolific_pid, study_id, session_id } = identifiers;
@@ -461,14 +520,20 @@ impl Journal {
             "INSERT INTO participants (name, token, form, started_ms, last_ms) VALUES (?1, ?2, ?3, ?4, ?4)",
             params![name, token, *form as i64, since_ms],
         )?;
+        let number = self.answers.last_insert_rowid();
+        if let Some(language) = language {
+            self.answers
+                .execute("INSERT OR REPLACE INTO languages VALUES (?1, ?2)", params![number, language])?;
+        }
         let place = self.people.len();
         self.people.push(Person {
-            number: self.answers.last_insert_rowid(),
+            number,
             name: name.clone(),
             form: *form,
             choices: Vec::new(),
             last_ms: *since_ms,
             finished: false,
+            about: about.clone(),
         });
         self.by_token.insert(token.clone(), place);
         self.held.participants += 1;
@@ -504,31 +569,25 @@ impl Journal {
             }
             self.write_down(token)?;
         }
-        let Some(&person) = self.by_token.get(token) else { return Ok(Err(Refusal::UnknownToken)) };
-        let person = &mut self.people[person];
+        let Some(&place) = self.by_token.get(token) else { return Ok(Err(Refusal::UnknownToken)) };
+        let person = &self.people[place];
         let form = &self.forms[person.form - 1];
         if let Err(refusal) = check(answer, form, person.choices.len() as u32) {
             return Ok(Err(refusal));
         }
-        let place = (answer.order - first_place(form)) as usize;
-        if let Some(&kept) = person.choices.get(place) {
-            return Ok(if kept == answer.choice { Ok(()) } else { Err(Refusal::Answered(answer.order)) });
+        if ((answer.order - first_place(form)) as usize) < person.choices.len() {
+            return self.again(place, answer, now_ms);
         }
         let values =
             params![person.number, answer.order, answer.stimulus, answer.choice.code(), answer.rt_ms, now_ms];
         self.answers
             .prepare_cached("INSERT INTO answers VALUES (?1, ?2, ?3, ?4, ?5, ?6)")?
             .execute(values)?;
-        if let Some(screen) = &answer.screen {
-            let said = serde_json::to_string(screen).expect("numbers and words alone");
-            self.answers.prepare_cached("INSERT INTO screens VALUES (?1, ?2, ?3)")?.execute(params![
-                person.number,
-                answer.order,
-                said
-            ])?;
-        }
+        self.keep_screen(person.number, answer)?;
+        self.keep_change(person.number, answer)?;
         let touch = "UPDATE participants SET last_ms = ?2 WHERE number = ?1";
         self.answers.prepare_cached(touch)?.execute(params![person.number, now_ms])?;
+        let person = &mut self.people[place];
         person.choices.push(answer.choice);
         person.last_ms = now_ms;
         self.held.answers += 1;

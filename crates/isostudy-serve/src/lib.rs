@@ -15,6 +15,8 @@
 //! - What one client costs is bounded, in memory, in connections and in sessions; nobody who has begun is forgotten for others.
 //! - No address, agent or other trace of a participant is kept but the identifiers of a panel, which are in a file of their own.
 
+pub mod anonymity;
+mod completions;
 pub mod deidentify;
 pub mod download;
 pub mod export;
@@ -22,9 +24,12 @@ pub mod journal;
 mod log;
 mod machine;
 pub mod page;
+pub mod people;
 pub mod record;
 pub mod screen;
 mod server;
+pub mod shown;
 
+pub use completions::Completions;
 pub use journal::random_hex;
 pub use server::{Limits, NoPublicUrl, PublicUrl, SHORTEST_TOKEN, ServeError, Settings, serve};

@@ -1,15 +1,19 @@
 //! The questionnaire's page.
 
-use isostudy_design::forms::{FormEntry, FormFile, Language};
+use crate::completions::Completions;
+use isostudy_design::config::Panel;
+use isostudy_design::forms::{AboutEntry, FormEntry, FormFile, Language};
 use serde::Serialize;
 
 /// The files of the page that are the same for all studies: name, MIME type, content.
-pub const FILES: [(&str, &str, &str); 7] = [
+pub const FILES: [(&str, &str, &str); 9] = [
     ("questionnaire.css", "text/css; charset=utf-8", include_str!("../page/questionnaire.css")),
     ("texts.js", "text/javascript; charset=utf-8", include_str!("../page/texts.js")),
     ("files.js", "text/javascript; charset=utf-8", include_str!("../page/files.js")),
     ("loading.js", "text/javascript; charset=utf-8", include_str!("../page/loading.js")),
     ("pair.js", "text/javascript; charset=utf-8", include_str!("../page/pair.js")),
+    ("about.js", "text/javascript; charset=utf-8", include_str!("../page/about.js")),
+    ("rights.js", "text/javascript; charset=utf-8", include_str!("../page/rights.js")),
     ("trial.js", "text/javascript; charset=utf-8", include_str!("../page/trial.js")),
     ("questionnaire.js", "text/javascript; charset=utf-8", include_str!("../page/questionnaire.js")),
 ];
@@ -91,6 +95,15 @@ impl Media {
     }
 }
 
+/// What a page of a server knows besides.
+#[derive(Debug, Clone, Copy)]
+pub struct Served<'a> {
+    /// Who sends people.
+    pub panel: Panel,
+    /// What people get who leave; what those get who have finished or were screened out they are told then.
+    pub completions: &'a Completions,
+}
+
 #[derive(Serialize)]
 struct KnownKind {
     kind: MediaFormat,
@@ -114,14 +127,31 @@ struct Known<'a> {
     media: Vec<KnownKind>,
     /// Pairs that every form shows first: fetched before anybody has a form.
     first: &'a [String],
+    about: &'a [AboutEntry],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ethics: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    least_age: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    retention_days: Option<u32>,
+    /// Whether the last answer may be changed.
+    revises: bool,
     /// Whether a server deals forms and takes answers.
     server: bool,
+    /// What the address calls the person, the study and the session of a panel.
+    panel: [Option<&'static str>; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    completion_withdrawn: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    completion_full: Option<&'a str>,
     forms: &'a [FormEntry],
 }
 
 /// `forms.js`: a script and not JSON, since a page from a folder may load the one but not the other. With a server the page
 /// is told no forms; it is dealt one. `digest` tells one version of the study from another.
-pub fn forms_js(file: &FormFile, digest: &str, media: &Media, server: bool) -> String {
+pub fn forms_js(file: &FormFile, digest: &str, media: &Media, served: Option<Served<'_>>) -> String {
     let known_kind = |&(kind, bytes, frames): &(MediaFormat, u64, u32)| KnownKind {
         kind,
         bytes,
@@ -140,8 +170,17 @@ pub fn forms_js(file: &FormFile, digest: &str, media: &Media, server: bool) -> S
         surface: media.surface,
         media: media.kinds.iter().map(known_kind).collect(),
         first: if file.forms.iter().all(|form| form.training == first) { first } else { &[] },
-        server,
-        forms: if server { &[] } else { &file.forms },
+        about: &file.about,
+        contact: file.contact.as_deref(),
+        ethics: file.ethics.as_deref(),
+        least_age: file.least_age,
+        retention_days: file.retention_days,
+        revises: file.go_back,
+        server: served.is_some(),
+        panel: served.map_or([None; 3], |served| served.panel.names()),
+        completion_withdrawn: served.and_then(|served| served.completions.withdrawn.as_deref()),
+        completion_full: served.and_then(|served| served.completions.full.as_deref()),
+        forms: if served.is_some() { &[] } else { &file.forms },
     };
     let json = serde_json::to_string(&known).expect("names and numbers alone");
     format!("window.ISOSTUDY = {json};\n")
@@ -164,13 +203,20 @@ mod tests {
     #[test]
     fn the_scripts_ask_for_texts_that_there_are_and_for_all_of_them() {
         let (english, scripts) = (shipped("en").unwrap(), scripts());
-        let keys = asked(&scripts, "text('");
+        // `getContext('2d')` is no text.
+        let calls = ["(", " ", "[", "!", "`", "{"].map(|before| format!("{before}text('"));
+        let keys: Vec<&str> = calls.iter().flat_map(|call| asked(&scripts, call)).collect();
         assert!(keys.len() > 40, "{keys:?}");
         for key in keys {
             assert!(english.contains_key(key) || ["title", "prompt"].contains(&key), "{key}");
         }
         let of_the_file = ["language", "direction", "no_script"];
-        for key in english.keys().filter(|key| !of_the_file.contains(&key.as_str())) {
+        // Questions about the person name their words themselves.
+        let of_questions = ["colour_vision", "screen_size", "comment"];
+        let is_named = |key: &&String| {
+            of_the_file.contains(&key.as_str()) || of_questions.iter().any(|start| key.starts_with(start))
+        };
+        for key in english.keys().filter(|key| !is_named(key)) {
             // Both sides of a pair are asked for by one line.
             let end = ["left_", "right_"].iter().find_map(|side| key.strip_prefix(side));
             let is_asked = scripts.contains(&format!("'{key}'"))
@@ -200,20 +246,9 @@ mod tests {
     #[test]
     fn the_first_file_is_in_the_first_language_and_no_text_is_mark_up() {
         let file = FormFile {
-            schema: 1,
-            study: "trial".into(),
             title: "{no_script} <b>&\"".into(),
-            prompt: "?".into(),
-            choices: ["a", "b", "c"].map(Into::into),
-            choices_stacked: None,
-            min_surface_px: None,
             languages: vec!["ar".into(), "de".into()],
-            texts: std::collections::BTreeMap::new(),
-            consent: String::new(),
-            instructions: String::new(),
-            loop_ms: 100,
-            page_scale: 1,
-            forms: Vec::new(),
+            ..crate::export::tests::empty_file()
         };
         let page = index(&file);
         assert!(page.contains("<html lang=\"ar\" dir=\"rtl\">"), "{page}");

@@ -3,6 +3,10 @@
 use crate::screen::{LONGEST_MS, Screen};
 use isostudy_design::forms::FormEntry;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Answers about a person by the ids of the questions.
+pub type About = BTreeMap<String, String>;
 
 /// Longest identifier of a panel.
 const LONGEST_ID: usize = 64;
@@ -48,6 +52,8 @@ pub struct Answer {
     pub rt_ms: u32,
     /// On what it was given, where that was recorded.
     pub screen: Option<Screen>,
+    /// How often it was changed, where the study lets people go back.
+    pub change: u32,
 }
 
 /// Why something that was sent is refused; nothing has changed.
@@ -83,6 +89,12 @@ pub enum Refusal {
     /// An identifier with other characters or too many.
     #[error("{0}: 1 to {LONGEST_ID} letters, digits, hyphens or underscores")]
     BadIdentifier(&'static str),
+    /// The study does not ask it about people.
+    #[error("the study does not ask that about people")]
+    UnknownQuestion,
+    /// No answer that the question takes.
+    #[error("the question takes no such answer")]
+    NoSuchValue,
     /// As many as can be.
     #[error("the study is full")]
     Full,
@@ -103,6 +115,8 @@ impl Refusal {
             Self::Unfinished(_) => "unfinished",
             Self::TooLong => "too-long",
             Self::BadIdentifier(_) => "bad-identifier",
+            Self::UnknownQuestion => "unknown-question",
+            Self::NoSuchValue => "no-such-value",
             Self::Full => "full",
             Self::Crowded => "crowded",
         }

@@ -15,9 +15,10 @@ mod simulation;
 pub use host::{NoPublicUrl, PublicUrl};
 pub use limits::Limits;
 
+use crate::completions::Completions;
 use crate::journal::{self, Handle, Held, Journal, JournalError, Loss};
 use crate::machine::{Machine, System};
-use crate::page::{self, Media, forms_js};
+use crate::page::{self, Media, Served, forms_js};
 use addresses::{Budgets, Peer};
 use axum::Router;
 use axum::body::{Body, Bytes};
@@ -25,7 +26,8 @@ use axum::extract::{Path as Matched, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use isostudy_design::forms::{FormFile, KeyEntry};
+use isostudy_design::config::Panel;
+use isostudy_design::forms::{FormFile, KeyEntry, Quotas};
 use std::collections::BTreeSet;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
@@ -58,8 +60,14 @@ pub struct Settings {
     pub address: SocketAddr,
     /// What the researcher's page asks for: of at least [`SHORTEST_TOKEN`] bytes, else nobody is let in.
     pub admin_token: String,
-    /// A code or an `https://` address for those who have finished.
-    pub completion: Option<String>,
+    /// What people get at the end.
+    pub completions: Completions,
+    /// Who sends people.
+    pub panel: Panel,
+    /// How many people the study takes.
+    pub quotas: Quotas,
+    /// Values of the questions that check attention.
+    pub attention: Vec<(String, String)>,
     /// Where participants reach the server, if not at the address where it listens. There is a proxy on this machine then, which tells
     /// whose requests it hands on.
     pub public_url: Option<PublicUrl>,
@@ -117,7 +125,12 @@ impl Shared {
         let most = settings.limits.sessions_per_address;
         Self {
             index: Bytes::from(page::index(&settings.file)),
-            forms_js: Bytes::from(forms_js(&settings.file, &settings.digest, &settings.media, true)),
+            forms_js: Bytes::from(forms_js(
+                &settings.file,
+                &settings.digest,
+                &settings.media,
+                Some(Served { panel: settings.panel, completions: &settings.completions }),
+            )),
             settings,
             machine,
             journal,
@@ -167,7 +180,8 @@ pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr, Held)) -> Result
         return Err(ServeError::Stimulus(settings.stimuli));
     }
     let machine = Arc::new(System);
-    let journal = Journal::open(&settings.answers, &settings.file, &settings.digest, settings.loss)?;
+    let mut journal = Journal::open(&settings.answers, &settings.file, &settings.digest, settings.loss)?;
+    journal.limit(settings.quotas.clone());
     let held = journal.held();
     if journal.is_uncounted() {
         machine.note(format!(
@@ -199,10 +213,14 @@ fn site(shared: Arc<Shared>) -> Router {
         .route("/api/sessions", post(api::begin))
         .route("/api/state", post(api::state))
         .route("/api/answers", post(api::answer))
+        .route("/api/about", post(api::about))
         .route("/api/finish", post(api::finish))
+        .route("/api/withdraw", post(api::withdraw))
         .route("/api/admin/summary", get(admin::summary))
         .route("/api/admin/answers.csv", get(admin::answers))
         .route("/api/admin/identities.csv", get(admin::identities))
+        .route("/api/admin/about.csv", get(admin::about))
+        .route("/api/admin/shown.json", get(admin::shown))
         .layer(fixed("cache-control", "no-store"));
     let pages = Router::new()
         .route("/", get(|site: Site| async move { file("index.html", &site) }))

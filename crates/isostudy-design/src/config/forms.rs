@@ -1,5 +1,6 @@
 //! How the questions are put to people.
 
+use super::about::AboutSection;
 use super::{perhaps_whole, whole};
 use crate::method::ConfigurationId;
 use crate::texts::{Texts, english};
@@ -96,6 +97,77 @@ pub struct FormsSection {
     /// Files of such texts by language.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub texts_files: BTreeMap<String, String>,
+    /// Questions about the person.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub about: Vec<AboutSection>,
+    /// Whether questions about the person may take words.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub free_text: bool,
+    /// Whether a free comment is asked for at the end.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub comment: bool,
+    /// Whom participants can ask.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<String>,
+    /// Who has approved the study, and under which number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ethics: Option<String>,
+    /// Least age of participants, in years.
+    #[serde(default, deserialize_with = "perhaps_whole", skip_serializing_if = "Option::is_none")]
+    pub least_age: Option<u32>,
+    /// For how many days after its end the study keeps answers.
+    #[serde(default, deserialize_with = "perhaps_whole", skip_serializing_if = "Option::is_none")]
+    pub retention_days: Option<u32>,
+    /// Who sends participants, and names them in the page's address.
+    #[serde(default, skip_serializing_if = "Panel::is_prolific")]
+    pub panel: Panel,
+    /// As `completion`, for those who withdrew.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub completion_withdrawn: Option<String>,
+    /// As `completion`, for those who were screened out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub completion_screened: Option<String>,
+    /// As `completion`, for those who came when the study was full.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub completion_full: Option<String>,
+    /// Most people for each form, finished or answering.
+    #[serde(default, deserialize_with = "perhaps_whole", skip_serializing_if = "Option::is_none")]
+    pub per_form: Option<u32>,
+    /// Whether participants may change their last answer.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub go_back: bool,
+}
+
+/// Who sends participants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Panel {
+    /// Prolific: `PROLIFIC_PID`, `STUDY_ID`, `SESSION_ID`.
+    #[default]
+    Prolific,
+    /// Amazon Mechanical Turk: `workerId`, `hitId`, `assignmentId`.
+    MTurk,
+    /// SONA: `survey_code`.
+    Sona,
+}
+
+impl Panel {
+    /// What the address calls the person, the study and the session; SONA's code stands for person and session.
+    pub fn names(self) -> [Option<&'static str>; 3] {
+        match self {
+            Self::Prolific => ["PROLIFIC_PID", "STUDY_ID", "SESSION_ID"].map(Some),
+            Self::MTurk => ["workerId", "hitId", "assignmentId"].map(Some),
+            Self::Sona => [Some("survey_code"), None, Some("survey_code")],
+        }
+    }
+
+    pub(crate) fn is_prolific(&self) -> bool {
+        *self == Self::Prolific
+    }
+}
+
+pub(crate) fn is_false(value: &bool) -> bool {
+    !value
 }
 
 fn consent() -> String {

@@ -1,7 +1,8 @@
 //! Forms as a file for whoever puts them to people, and the key for whoever reads the answers.
 
+use super::about::AboutEntry;
 use super::{Form, Questionnaire, Role};
-use crate::config::{is_english_alone, languages};
+use crate::config::{AboutSection, is_english_alone, is_false, languages};
 use crate::method::ConfigurationId;
 use crate::study::Study;
 use crate::texts::Texts;
@@ -41,6 +42,24 @@ pub struct FormFile {
     pub consent: String,
     /// What they are told to do.
     pub instructions: String,
+    /// Questions about the person, in the order in which they are asked.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub about: Vec<AboutEntry>,
+    /// Whom participants can ask.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<String>,
+    /// Who has approved the study.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ethics: Option<String>,
+    /// Least age of participants, in years.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least_age: Option<u32>,
+    /// For how many days after its end the study keeps answers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub retention_days: Option<u32>,
+    /// Whether participants may change their last answer.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub go_back: bool,
     /// How long a pair takes to turn once, in milliseconds.
     pub loop_ms: u32,
     /// Whole-number enlargement of the pairs by the page, nearest neighbour.
@@ -107,10 +126,34 @@ impl Questionnaire<'_> {
             texts: self.study.texts.clone(),
             consent: self.section.consent.clone(),
             instructions: self.section.instructions.clone(),
+            about: self.about(),
+            contact: self.section.contact.clone(),
+            ethics: self.section.ethics.clone(),
+            least_age: self.section.least_age,
+            retention_days: self.section.retention_days,
+            go_back: self.section.go_back,
             loop_ms: self.study.file.turntable.loop_ms(),
             page_scale: self.section.page_scale,
             forms: self.planned().iter().map(entry).collect(),
         }
+    }
+
+    fn about(&self) -> Vec<AboutEntry> {
+        let comment = self.section.comment.then(AboutEntry::comment);
+        self.section.about.iter().map(AboutEntry::of).chain(comment).collect()
+    }
+
+    /// Questions that check attention, with the value of whoever reads them. Never to be given to participants.
+    pub fn attention(&self) -> Vec<(String, String)> {
+        let check = |about: &AboutSection| Some((about.id.clone(), about.expects?.to_string()));
+        self.section.about.iter().filter_map(check).collect()
+    }
+
+    /// How many people the study takes.
+    pub fn quotas(&self) -> Quotas {
+        let of = |about: &AboutSection| (about.id.clone(), about.most.clone());
+        let options = self.section.about.iter().filter(|about| !about.most.is_empty()).map(of);
+        Quotas { per_form: self.section.per_form, options: options.collect() }
     }
 
     /// What each place of each planned form shows.
@@ -146,6 +189,15 @@ impl Questionnaire<'_> {
         }
         codes
     }
+}
+
+/// Most people, finished or answering. They may change while a study runs, and are no part of its [`FormFile`].
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Quotas {
+    /// For each form.
+    pub per_form: Option<u32>,
+    /// For the options of questions about the person, by id; 0 for any number.
+    pub options: Vec<(String, Vec<u32>)>,
 }
 
 impl Study {

@@ -3,6 +3,7 @@
 use super::FormFile;
 use crate::texts::{DIRECTION, ENGLISH, OF_STUDY, Texts, english, shipped};
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// The answers beside each other, and the same where one surface is over the other.
 const STACKED: [(&str, &str); 3] = [("left", "upper"), ("none", "none_stacked"), ("right", "lower")];
@@ -88,11 +89,12 @@ impl FormFile {
             let of_study = replaced.map(|(key, _)| key.as_str()).collect::<Vec<_>>();
             let (own, usual) = (self.own_texts(lang), shipped(lang));
             let all = english().keys().map(String::as_str).chain(OF_STUDY);
+            let all: BTreeSet<&str> = all.chain(of_study.iter().copied()).collect();
             let lacks = |key: &&str| {
                 !own.contains_key(*key)
                     && (of_study.contains(key) || usual.is_none_or(|usual| !usual.contains_key(*key)))
             };
-            all.filter(lacks).map(str::to_owned).collect::<Vec<_>>()
+            all.into_iter().filter(lacks).map(str::to_owned).collect::<Vec<_>>()
         };
         let languages = self.languages.iter().map(|lang| (lang.as_str(), needed(lang)));
         languages.filter(|(_, keys)| !keys.is_empty()).collect()

@@ -38,6 +38,19 @@ fn balanced(participants: u32, controls: u32, repeats: u32, max_questions: u32) 
         languages: vec!["en".into()],
         texts: Default::default(),
         texts_files: Default::default(),
+        about: Vec::new(),
+        free_text: false,
+        comment: false,
+        contact: None,
+        ethics: None,
+        least_age: None,
+        retention_days: None,
+        panel: crate::config::Panel::Prolific,
+        completion_withdrawn: None,
+        completion_screened: None,
+        completion_full: None,
+        per_form: None,
+        go_back: false,
     }
 }
 

@@ -2,10 +2,11 @@
 
 use super::configuration;
 use crate::check::{Checker, ConfigError, short};
-use crate::config::{StudyFile, ThreadSweepSection};
+use crate::config::{FormsSection, StudyFile, ThreadSweepSection};
 use crate::contrast::contrasts;
 use crate::method::is_summed;
 use crate::study::{Configuration, Study};
+use crate::texts::blanks;
 use crate::wording::did_you_mean;
 use crate::{Arrangement, MethodId};
 use std::collections::BTreeSet;
@@ -197,15 +198,25 @@ pub(super) fn check_forms(
     if let Some(choices) = &forms.choices_stacked {
         c.texts("forms.choices_stacked", choices)?;
     }
-    if let Some(completion) = &forms.completion {
-        let code = completion.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');
-        if completion.is_empty() || completion.len() > 500 || !(code || completion.starts_with("https://")) {
-            return c.refuse(
-                "forms.completion",
-                completion,
-                "letters, digits and hyphens, or an https:// address; up to 500",
-            );
-        }
+    for (key, completion) in [
+        ("forms.completion", &forms.completion),
+        ("forms.completion_withdrawn", &forms.completion_withdrawn),
+        ("forms.completion_screened", &forms.completion_screened),
+        ("forms.completion_full", &forms.completion_full),
+    ] {
+        completion.as_ref().map_or(Ok(()), |completion| check_completion(c, key, completion, forms))?;
+    }
+    for (key, text) in [("forms.contact", &forms.contact), ("forms.ethics", &forms.ethics)] {
+        text.as_ref().map_or(Ok(()), |text| c.text(key, text, "must be a text"))?;
+    }
+    if let Some(age) = forms.least_age {
+        c.count("forms.least_age", age, 1, 120)?;
+    }
+    if let Some(days) = forms.retention_days {
+        c.count("forms.retention_days", days, 1, 36_500)?;
+    }
+    if let Some(most) = forms.per_form {
+        c.count("forms.per_form", most, 1, 100_000)?;
     }
     c.count("forms.training", forms.training.len() as u32, 0, 100)?;
     for (i, pair) in file.forms.iter().flat_map(|forms| &forms.training).enumerate() {
@@ -218,6 +229,29 @@ pub(super) fn check_forms(
         }
     }
     Ok(())
+}
+
+/// A code, or an address that may repeat what the panel said in the address of the page.
+fn check_completion(
+    c: &Checker<'_>,
+    key: &str,
+    completion: &str,
+    forms: &FormsSection,
+) -> Result<(), ConfigError> {
+    let code = completion.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');
+    if completion.is_empty() || completion.len() > 500 || !(code || completion.starts_with("https://")) {
+        return c.refuse(key, completion, "letters, digits and hyphens, or an https:// address; up to 500");
+    }
+    let names = forms.panel.names();
+    match blanks(completion).into_iter().find(|blank| !names.contains(&Some(blank))) {
+        None => Ok(()),
+        Some(blank) => {
+            let mut known: Vec<&str> = names.into_iter().flatten().collect();
+            known.dedup();
+            let limit = format!("has {{{blank}}}, and forms.panel knows {{{}}}", known.join("}, {"));
+            c.refuse(key, completion, limit)
+        }
+    }
 }
 
 /// Whether the study has the contrasts that it calls primary.

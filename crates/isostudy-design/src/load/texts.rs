@@ -2,6 +2,7 @@
 
 use crate::check::{Checker, ConfigError};
 use crate::config::FormsSection;
+use crate::forms::about_texts;
 use crate::read::parse_toml;
 use crate::texts::{DIRECTION, OF_STUDY, Texts, blanks, english};
 use crate::wording::did_you_mean;
@@ -29,6 +30,10 @@ pub(super) fn own(c: &Checker<'_>, forms: &FormsSection) -> Result<BTreeMap<Stri
         check_texts(c, forms, lang, texts, &format!("{key}."))?;
         own.entry(lang.clone()).or_default().extend(texts.clone());
     }
+    // What the study asks about people is in its first language.
+    let first = own.entry(forms.languages[0].clone()).or_default();
+    forms.about.iter().for_each(|about| first.extend(about_texts(about)));
+    own.retain(|_, texts| !texts.is_empty());
     Ok(own)
 }
 
@@ -69,16 +74,19 @@ fn check_texts(
     texts: &Texts,
     before: &str,
 ) -> Result<(), ConfigError> {
+    let about: Texts = forms.about.iter().flat_map(about_texts).collect();
     let of_section = |key: &str| match key {
         "title" => Some("study.title"),
         "prompt" => Some("forms.prompt"),
         "left" | "none" | "right" => Some("forms.choices"),
+        key if about.contains_key(key) => Some("forms.about"),
         _ => None,
     };
     for (key, text) in texts {
         let place = format!("{before}{key}");
-        if !english().contains_key(key) && !OF_STUDY.contains(&key.as_str()) {
-            let meant = did_you_mean(key, english().keys().map(String::as_str).chain(OF_STUDY));
+        let known = || english().keys().chain(about.keys()).map(String::as_str).chain(OF_STUDY);
+        if known().all(|other| other != key) {
+            let meant = did_you_mean(key, known());
             return c.refuse(place, short(text), format!("is no text of the page{meant}"));
         }
         // A file may be a whole language, and serve other studies too.

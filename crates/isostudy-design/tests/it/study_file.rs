@@ -112,7 +112,7 @@ fn names_are_those_that_are_taken() {
             tried += 1;
         }
     }
-    assert_eq!(tried, 21);
+    assert_eq!(tried, 24);
 }
 
 #[test]
@@ -389,6 +389,32 @@ fn full_study() -> StudyFile {
             languages: vec!["de".into()],
             texts: [(text(), [(text(), text())].into())].into(),
             texts_files: [(text(), text())].into(),
+            about: vec![AboutSection {
+                id: text(),
+                kind: AboutKind::Scale,
+                ask: Some(text()),
+                options: vec![text()],
+                from: Some(1.0),
+                to: Some(2.0),
+                ends: Some([text(), text()]),
+                when: AboutTime::After,
+                optional: true,
+                expects: Some(1),
+                screens_out: vec![1],
+                most: vec![1],
+            }],
+            free_text: true,
+            comment: true,
+            contact: Some(text()),
+            ethics: Some(text()),
+            least_age: Some(18),
+            retention_days: Some(30),
+            panel: Panel::Sona,
+            completion_withdrawn: Some(text()),
+            completion_screened: Some(text()),
+            completion_full: Some(text()),
+            per_form: Some(1),
+            go_back: true,
         }),
         responses: Some(ResponsesSection {
             file: Some(text()),

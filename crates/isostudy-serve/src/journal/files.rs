@@ -1,12 +1,14 @@
 //! The files: `answers.sqlite`, `identities.sqlite`, and `lock`.
 
 use super::copy::Copied;
+use super::departures::{Departure, Departures};
 use super::{JournalError, seal};
 use crate::export::Given;
 use crate::machine::{Machine, Owned, System};
-use crate::record::{Answer, Choice, Identifiers};
+use crate::record::{About, Answer, Choice, Identifiers};
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
@@ -25,11 +27,20 @@ const ANSWERS_SCHEMA: &str = "
         WITHOUT ROWID;
     CREATE TABLE IF NOT EXISTS screens (
         participant INTEGER NOT NULL REFERENCES participants, place INTEGER NOT NULL, screen TEXT NOT NULL,
-        PRIMARY KEY (participant, place)) WITHOUT ROWID;";
+        PRIMARY KEY (participant, place)) WITHOUT ROWID;
+    CREATE TABLE IF NOT EXISTS changes (
+        participant INTEGER NOT NULL REFERENCES participants, place INTEGER NOT NULL, number INTEGER NOT NULL,
+        PRIMARY KEY (participant, place)) WITHOUT ROWID;
+    CREATE TABLE IF NOT EXISTS languages (
+        participant INTEGER PRIMARY KEY REFERENCES participants, language TEXT NOT NULL);
+    CREATE TABLE IF NOT EXISTS departures (kind TEXT PRIMARY KEY, number INTEGER NOT NULL) WITHOUT ROWID;";
 
 const IDENTITIES_SCHEMA: &str = "
     CREATE TABLE IF NOT EXISTS identities (
-        participant TEXT PRIMARY KEY, prolific_pid TEXT, study_id TEXT, session_id TEXT) WITHOUT ROWID;";
+        participant TEXT PRIMARY KEY, prolific_pid TEXT, study_id TEXT, session_id TEXT) WITHOUT ROWID;
+    CREATE TABLE IF NOT EXISTS about (
+        participant TEXT NOT NULL, question TEXT NOT NULL, value TEXT NOT NULL, PRIMARY KEY (participant, question))
+        WITHOUT ROWID;";
 
 /// Makes a folder if it is not there, and takes it for this process: two servers on one file would each know half of the
 /// participants.
@@ -88,7 +99,11 @@ pub(super) fn open(machine: &dyn Machine, from: &Path, folder: &Path) -> Result<
             connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
             connection.pragma_update(None, "journal_mode", "WAL")?;
             connection.pragma_update(None, "synchronous", "FULL")?;
-            connection.execute_batch(schema)?;
+            // What is deleted is written over, and nothing of it is put into files of SQLite's own.
+            connection.pragma_update(None, "secure_delete", true)?;
+            connection.pragma_update(None, "temp_store", "MEMORY")?;
+            // One sync for all tables of a new file.
+            connection.execute_batch(&format!("BEGIN; {schema} COMMIT;"))?;
             Ok(connection)
         };
         open().map_err(|source| error(folder, source))
@@ -145,15 +160,19 @@ pub(super) fn study(answers: &Connection) -> rusqlite::Result<Option<(String, St
 }
 
 pub(super) fn given(answers: &Connection) -> rusqlite::Result<Vec<Given>> {
-    // Folders of earlier versions have no screens, and what only reads them makes none.
-    let known = "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = 'screens'";
-    let screens = match answers.query_row(known, [], |row| row.get::<_, i64>(0))? {
-        0 => "NULL",
-        _ => "(SELECT screen FROM screens s WHERE s.participant = a.participant AND s.place = a.place)",
+    let of = |table: &str, column: &str| -> rusqlite::Result<String> {
+        Ok(if has_table(answers, table)? {
+            format!(
+                "(SELECT {column} FROM {table} t WHERE t.participant = a.participant AND t.place = a.place)"
+            )
+        } else {
+            "NULL".into()
+        })
     };
+    let (screens, changes) = (of("screens", "screen")?, of("changes", "number")?);
     let mut statement = answers.prepare(&format!(
-        "SELECT name, form, place, stimulus, choice, rt_ms, {screens} FROM answers a JOIN participants ON participant = number
-         ORDER BY participant, place"
+        "SELECT name, form, place, stimulus, choice, rt_ms, {screens}, {changes}
+         FROM answers a JOIN participants ON participant = number ORDER BY participant, place"
     ))?;
     let mut rows = statement.query([])?;
     let mut given = Vec::new();
@@ -167,10 +186,61 @@ pub(super) fn given(answers: &Connection) -> rusqlite::Result<Vec<Given>> {
         given.push(Given {
             participant: row.get(0)?,
             form,
-            answer: Answer { order, stimulus, choice, rt_ms, screen: screen.and_then(Result::ok) },
+            answer: Answer {
+                order,
+                stimulus,
+                choice,
+                rt_ms,
+                screen: screen.and_then(Result::ok),
+                change: row.get::<_, Option<u32>>(7)?.unwrap_or(0),
+            },
         });
     }
     Ok(given)
+}
+
+/// Whether a database has a table: folders of earlier versions lack some, and what only reads them makes none.
+fn has_table(database: &Connection, table: &str) -> rusqlite::Result<bool> {
+    let known = "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?1";
+    Ok(database.query_row(known, [table], |row| row.get::<_, i64>(0))? > 0)
+}
+
+/// The languages of participants, by their names.
+pub(super) fn languages(answers: &Connection) -> rusqlite::Result<BTreeMap<String, String>> {
+    if !has_table(answers, "languages")? {
+        return Ok(BTreeMap::new());
+    }
+    let all = "SELECT name, language FROM languages JOIN participants ON participant = number";
+    let mut statement = answers.prepare(all)?;
+    statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect()
+}
+
+/// How many have left of whom nothing is kept.
+pub(super) fn departures(answers: &Connection) -> rusqlite::Result<Departures> {
+    if !has_table(answers, "departures")? {
+        return Ok(Departures::default());
+    }
+    let mut statement = answers.prepare("SELECT kind, number FROM departures")?;
+    let found: BTreeMap<String, u64> = statement
+        .query_map([], |row| Ok((row.get(0)?, row.get::<_, i64>(1)?.unsigned_abs())))?
+        .collect::<rusqlite::Result<_>>()?;
+    let [withdrawn, screened_out, full] =
+        Departure::ALL.map(|kind| found.get(kind.name()).copied().unwrap_or(0));
+    Ok(Departures { withdrawn, screened_out, full })
+}
+
+/// Answers about people, by their names.
+pub(super) fn about(identities: &Connection) -> rusqlite::Result<BTreeMap<String, About>> {
+    let mut all: BTreeMap<String, About> = BTreeMap::new();
+    if !has_table(identities, "about")? {
+        return Ok(all);
+    }
+    let mut statement = identities.prepare("SELECT participant, question, value FROM about")?;
+    let mut rows = statement.query([])?;
+    while let Some(row) = rows.next()? {
+        all.entry(row.get(0)?).or_default().insert(row.get(1)?, row.get(2)?);
+    }
+    Ok(all)
 }
 
 pub(super) fn identities(connection: &Connection) -> rusqlite::Result<Vec<(String, Identifiers)>> {
@@ -190,6 +260,12 @@ pub struct Kept {
     pub digest: String,
     /// Every answer, participant by participant in the order in which they began to answer.
     pub given: Vec<Given>,
+    /// Answers about people, by their names.
+    pub about: BTreeMap<String, About>,
+    /// The languages of people, by their names.
+    pub languages: BTreeMap<String, String>,
+    /// How many have left of whom nothing is kept.
+    pub departures: Departures,
 }
 
 /// The answers to a study in a folder, whether or not a server is at work there, on media that cannot be written to as well.
@@ -203,33 +279,48 @@ pub fn kept(folder: &Path, study: &str) -> Result<Kept, JournalError> {
 
 pub(crate) fn kept_on(machine: &dyn Machine, folder: &Path, study: &str) -> Result<Kept, JournalError> {
     regular(folder)?;
-    let (found, given) = match read(machine, folder) {
+    let (found, mut kept) = match read(machine, folder) {
         // SQLite reads a log only where it may write beside it.
         Err(error) if cannot_write(&error) => {
-            let copy = Copied::of(machine, folder, &[ANSWERS])?;
+            let copy = Copied::of(machine, folder, &[ANSWERS, IDENTITIES])?;
             read(machine, copy.folder())
         }
         found => found,
     }
     .map_err(|source| error(folder, source))?;
+    // Who gave no answer that was kept is nobody.
+    kept.about.retain(|name, _| kept.given.iter().any(|given| given.participant == *name));
     match found {
         Some((found, version)) if found != study => {
             Err(JournalError::OtherStudy { path: folder.into(), found, version })
         }
-        found => Ok(Kept { digest: found.map(|(_, digest)| digest).unwrap_or_default(), given }),
+        found => {
+            kept.digest = found.map(|(_, digest)| digest).unwrap_or_default();
+            Ok(kept)
+        }
     }
 }
 
-type Found = (Option<(String, String)>, Vec<Given>);
+type Found = (Option<(String, String)>, Kept);
 
 fn read(machine: &dyn Machine, folder: &Path) -> rusqlite::Result<Found> {
-    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let mut connection = Connection::open_with_flags_and_vfs(folder.join(ANSWERS), flags, machine.vfs())?;
-    connection.busy_timeout(Duration::from_secs(5))?;
-    connection.pragma_update(None, "query_only", true)?;
+    let open = |name: &str| -> rusqlite::Result<Connection> {
+        let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        let connection = Connection::open_with_flags_and_vfs(folder.join(name), flags, machine.vfs())?;
+        connection.busy_timeout(Duration::from_secs(5))?;
+        connection.pragma_update(None, "query_only", true)?;
+        Ok(connection)
+    };
+    // What is said about people may be given without their answers, or not at all.
+    let about = match machine.read(&folder.join(IDENTITIES), 1) {
+        Ok(begin) if !begin.is_empty() => about(&open(IDENTITIES)?)?,
+        _ => BTreeMap::new(),
+    };
+    let mut connection = open(ANSWERS)?;
     // One moment of a file that a server may be writing to.
     let moment = connection.transaction()?;
-    Ok((study(&moment)?, given(&moment)?))
+    let (given, languages, departures) = (given(&moment)?, languages(&moment)?, departures(&moment)?);
+    Ok((study(&moment)?, Kept { digest: String::new(), given, about, languages, departures }))
 }
 
 fn cannot_write(error: &rusqlite::Error) -> bool {

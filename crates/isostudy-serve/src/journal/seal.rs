@@ -87,6 +87,16 @@ impl Seal {
         Ok(())
     }
 
+    /// What to write before a commit that leaves `held`, where any of it is less than what was written.
+    pub(super) fn less(&self, held: Held) -> Option<Held> {
+        let before = self.written.filter(|before| held.lacks(before))?;
+        Some(Held {
+            answers: before.answers.min(held.answers),
+            participants: before.participants.min(held.participants),
+            identities: before.identities.min(held.identities),
+        })
+    }
+
     /// Has it on disk too.
     pub(super) fn sync(&self) -> io::Result<()> {
         self.file.sync()

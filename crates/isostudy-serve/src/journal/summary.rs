@@ -1,5 +1,6 @@
 //! How a study stands.
 
+use super::departures::Departures;
 use super::{GIVEN_UP_MS, Journal};
 use isostudy_design::forms::KeyEntry;
 use serde::Serialize;
@@ -16,6 +17,8 @@ pub struct Summary {
     pub answering: usize,
     /// By form: number, who began and did not give up, who finished.
     pub forms: Vec<[usize; 3]>,
+    /// How many have left of whom nothing is kept.
+    pub departures: Departures,
     /// Answers.
     pub answers: u64,
     /// Answers in each of the last 60 minutes, the newest last.
@@ -68,7 +71,8 @@ impl Journal {
             |((_, id), times): ((usize, &str), Vec<u32>)| (id.to_owned(), times.len() as u64, median(times));
         let questions = times.into_iter().map(question).collect();
         let finished = self.people.iter().filter(|person| person.finished).count();
-        Ok(Summary { started, finished, answering, forms, answers, per_minute, questions })
+        let departures = self.departures()?;
+        Ok(Summary { started, finished, answering, forms, departures, answers, per_minute, questions })
     }
 }
 

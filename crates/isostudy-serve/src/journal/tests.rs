@@ -1,3 +1,5 @@
+mod people;
+
 use super::*;
 use tempfile::tempdir;
 
@@ -7,22 +9,7 @@ fn file(forms: usize) -> FormFile {
         training: vec!["tani".into()],
         questions: ["a", "b", "c"].map(|letter| format!("{letter}{form}")).into(),
     };
-    FormFile {
-        schema: 1,
-        study: "trial".into(),
-        title: "Trial".into(),
-        prompt: "Which?".into(),
-        choices: ["Left".into(), "None".into(), "Right".into()],
-        choices_stacked: None,
-        min_surface_px: None,
-        languages: vec!["en".into()],
-        texts: std::collections::BTreeMap::new(),
-        consent: "Yes".into(),
-        instructions: "Look".into(),
-        loop_ms: 100,
-        page_scale: 1,
-        forms: (1..=forms).map(form).collect(),
-    }
+    FormFile { forms: (1..=forms).map(form).collect(), ..crate::export::tests::empty_file() }
 }
 
 fn nobody() -> Identifiers {
@@ -44,7 +31,7 @@ fn first_answer(journal: &mut Journal, dealt: &Dealt, now_ms: i64) {
 }
 
 fn answer(order: u32, stimulus: &str, choice: Choice) -> Answer {
-    Answer { order, stimulus: stimulus.into(), choice, rt_ms: 1200, screen: None }
+    Answer { order, stimulus: stimulus.into(), choice, rt_ms: 1200, screen: None, change: 0 }
 }
 
 #[test]

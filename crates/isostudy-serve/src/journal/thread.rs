@@ -128,7 +128,14 @@ pub(crate) fn desk(journal: Journal) -> (Handle, Desk) {
     let (work, waiting) = channel();
     let missing = Arc::new(AtomicBool::new(false));
     let machine = Arc::clone(&journal.machine);
-    let trouble = Trouble { machine, missing: Arc::clone(&missing), unsaved: None, unread: None, seal: None };
+    let trouble = Trouble {
+        machine,
+        missing: Arc::clone(&missing),
+        unsaved: None,
+        unread: None,
+        seal: None,
+        scrub: None,
+    };
     (Handle { work, missing }, Desk { journal, waiting, trouble })
 }
 
@@ -160,6 +167,8 @@ impl Desk {
         }
         if !changes.is_empty() {
             change(journal, changes, trouble)?;
+        } else if !trouble.missing.load(Ordering::Acquire) {
+            trouble.scrubbed(journal.scrub());
         }
         for read in reads {
             match read(journal) {
@@ -193,6 +202,7 @@ fn change(journal: &mut Journal, batch: Vec<Change>, trouble: &mut Trouble) -> R
                 trouble.saved();
             }
             trouble.seal(journal.seal());
+            trouble.scrubbed(journal.scrub());
             replies.into_iter().for_each(|reply| reply());
             Ok(())
         }
@@ -209,6 +219,8 @@ fn change(journal: &mut Journal, batch: Vec<Change>, trouble: &mut Trouble) -> R
 fn commit(journal: &mut Journal, batch: Vec<Change>) -> rusqlite::Result<Vec<Reply>> {
     journal.answers.execute_batch("BEGIN IMMEDIATE")?;
     let replies = batch.into_iter().map(|work| work(journal)).collect::<rusqlite::Result<Vec<_>>>()?;
+    let stopped = |error| rusqlite::Error::ToSqlConversionFailure(Box::new(error));
+    journal.seal_less().map_err(stopped)?;
     if !journal.identities.is_autocommit() {
         journal.identities.execute_batch("COMMIT")?;
     }
@@ -224,6 +236,7 @@ struct Trouble {
     unsaved: Option<String>,
     unread: Option<String>,
     seal: Option<String>,
+    scrub: Option<String>,
 }
 
 impl Trouble {
@@ -263,6 +276,20 @@ impl Trouble {
         if self.unsaved.take().is_some() {
             self.machine.note("answers are saved again".into());
         }
+    }
+
+    fn scrubbed(&mut self, clean: rusqlite::Result<bool>) {
+        let error = match clean {
+            Ok(true) => None,
+            Ok(false) => Some("somebody reads an older state".to_owned()),
+            Err(error) => Some(error.to_string()),
+        };
+        if let Some(error) = error.as_ref().filter(|_| self.scrub != error) {
+            self.machine.note(format!(
+                "deleted answers may still be in the files, which is tried again every half second: {error}"
+            ));
+        }
+        self.scrub = error;
     }
 
     fn seal(&mut self, written: std::io::Result<()>) {

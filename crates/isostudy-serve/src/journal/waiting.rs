@@ -2,18 +2,21 @@
 //! whoever asks for forms without end fills nothing.
 
 use super::GIVEN_UP_MS;
-use crate::record::{Identifiers, Refusal};
+use crate::record::{About, Identifiers, Refusal};
 use std::collections::HashMap;
 
 /// Most who wait at a time: 40 MB. Of more, who comes last is refused; nobody is forgotten within two hours.
 const MOST: usize = 100_000;
 
 /// Somebody who was dealt a form.
+#[derive(Clone)]
 pub(super) struct Newcomer {
     pub(super) name: String,
     pub(super) token: String,
     pub(super) form: usize,
     pub(super) identifiers: Identifiers,
+    pub(super) language: Option<String>,
+    pub(super) about: About,
     pub(super) since_ms: i64,
 }
 
@@ -54,7 +57,14 @@ impl Waiting {
         self.people.get(token)
     }
 
-    /// Somebody whose first answer has come, until [`Waiting::arrived`] or [`Waiting::turned_back`].
+    /// Keeps an answer about somebody who waits.
+    pub(super) fn add_about(&mut self, token: &str, id: &str, value: &str) {
+        if let Some(newcomer) = self.people.get_mut(token) {
+            newcomer.about.insert(id.into(), value.into());
+        }
+    }
+
+    /// Somebody whose first answer has come, or who left, until [`Waiting::arrived`] or [`Waiting::turned_back`].
     pub(super) fn take(&mut self, token: &str) -> Option<&Newcomer> {
         let newcomer = self.people.remove(token)?;
         self.arriving.push(newcomer);
@@ -83,6 +93,8 @@ mod tests {
             token: token.to_string(),
             form: 1,
             identifiers: Identifiers::default(),
+            language: None,
+            about: About::new(),
             since_ms,
         };
         let mut waiting = Waiting { most: 3, ..Waiting::default() };

@@ -3,9 +3,10 @@
 
 use super::addresses::Peer;
 use super::api::Failure;
-use super::{SHORTEST_TOKEN, Shared, Site};
+use super::{SHORTEST_TOKEN, Settings, Shared, Site};
 use crate::export::{self, HEADER};
-use crate::journal::Summary;
+use crate::journal::{Journal, Summary};
+use crate::{people, shown};
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
@@ -80,7 +81,36 @@ pub(super) async fn identities(
     let all = site.journal.read(|journal| journal.identities()).await?;
     let rows: Vec<_> =
         all.iter().map(|(name, of)| (name, &of.prolific_pid, &of.study_id, &of.session_id)).collect();
-    Ok(csv(export::csv(&rows, &["participant", "PROLIFIC_PID", "STUDY_ID", "SESSION_ID"])))
+    // A panel that has one code for the person and the session fills both columns with it.
+    let [person, study, session] = site.settings.panel.names();
+    let unused = |name: Option<&'static str>| name.unwrap_or("unused");
+    let again = if person == session { "session" } else { unused(session) };
+    Ok(csv(export::csv(&rows, &["participant", unused(person), unused(study), again])))
+}
+
+/// `GET /api/admin/about.csv`: what people said about themselves.
+pub(super) async fn about(
+    site: Site,
+    Extension(peer): Extension<Peer>,
+    headers: HeaderMap,
+) -> Result<Response, Failure> {
+    authorised(&site, peer, &headers).await?;
+    let all = site.journal.read(|journal| journal.all_about()).await?;
+    Ok(csv(people::about_csv(&site.settings.file, &site.settings.attention, &all)))
+}
+
+/// `GET /api/admin/shown.json`: what was shown to whom.
+pub(super) async fn shown(
+    site: Site,
+    Extension(peer): Extension<Peer>,
+    headers: HeaderMap,
+) -> Result<Response, Failure> {
+    authorised(&site, peer, &headers).await?;
+    let read = |journal: &Journal| Ok((journal.given()?, journal.languages()?, journal.departures()?));
+    let (given, languages, departures) = site.journal.read(read).await?;
+    let Settings { file, digest, key, .. } = &site.settings;
+    let text = shown::json(file, digest, &given, key, &languages, departures);
+    Ok(([(header::CONTENT_TYPE, "application/json")], text).into_response())
 }
 
 fn csv(text: String) -> Response {

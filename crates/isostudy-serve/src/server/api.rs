@@ -2,7 +2,7 @@
 
 use super::Site;
 use super::addresses::Peer;
-use crate::journal::{Dealt, Unsaved};
+use crate::journal::{Dealt, Taken, Unsaved};
 use crate::record::{Answer, Identifiers, Refusal};
 use crate::screen::Screen;
 use axum::extract::rejection::JsonRejection;
@@ -77,21 +77,36 @@ impl From<JsonRejection> for Failure {
 
 type Asked<T> = Result<Json<T>, JsonRejection>;
 
+/// Who begins, and in which language.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Beginning {
+    lang: Option<String>,
+    prolific_pid: Option<String>,
+    study_id: Option<String>,
+    session_id: Option<String>,
+}
+
 /// `POST /api/sessions`: a form for somebody.
 pub(super) async fn begin(
     site: Site,
     Extension(peer): Extension<Peer>,
     headers: HeaderMap,
-    asked: Asked<Identifiers>,
+    asked: Asked<Beginning>,
 ) -> Result<Json<Dealt>, Failure> {
-    let Json(identifiers) = asked?;
+    let Json(Beginning { lang, prolific_pid, study_id, session_id }) = asked?;
+    let identifiers = Identifiers { prolific_pid, study_id, session_id };
     if let Some(sessions) = &site.sessions {
         let taken = sessions.take(site.client(peer, &headers), 0, Instant::now());
         let many = "too many people begin from this address at once";
         taken.map_err(|wait| Failure::TooMany(many, wait))?;
     }
     let machine = Arc::clone(&site.machine);
-    Ok(Json(site.journal.change(move |journal| Ok(journal.begin(identifiers, machine.now_ms()))).await??))
+    Ok(Json(
+        site.journal
+            .change(move |journal| Ok(journal.begin_in(lang, identifiers, machine.now_ms())))
+            .await??,
+    ))
 }
 
 /// `POST /api/state`: where somebody stands.
@@ -111,6 +126,9 @@ pub(super) struct Answered {
     /// Pages of an earlier version do not say it.
     #[serde(default)]
     screen: serde_json::Value,
+    /// How often it was changed.
+    #[serde(default)]
+    change: u32,
 }
 
 #[derive(Serialize)]
@@ -120,10 +138,10 @@ pub(super) struct Saved {
 
 /// `POST /api/answers`: one answer, acknowledged when it is on disk.
 pub(super) async fn answer(site: Site, asked: Asked<Answered>) -> Result<Json<Saved>, Failure> {
-    let Json(Answered { token, order, stimulus, choice, rt_ms, screen }) = asked?;
+    let Json(Answered { token, order, stimulus, choice, rt_ms, screen, change }) = asked?;
     // An answer is worth more than what it was given on: no browser's odd word loses one.
     let screen = serde_json::from_value(screen).ok().filter(Screen::is_sound);
-    let answer = Answer { order, stimulus, choice, rt_ms, screen };
+    let answer = Answer { order, stimulus, choice, rt_ms, screen, change };
     let machine = Arc::clone(&site.machine);
     site.journal.change(move |journal| journal.answer(&token, &answer, machine.now_ms())).await??;
     Ok(Json(Saved { saved: true }))
@@ -133,6 +151,55 @@ pub(super) async fn answer(site: Site, asked: Asked<Answered>) -> Result<Json<Sa
 #[serde(deny_unknown_fields)]
 pub(super) struct Token {
     token: String,
+}
+
+/// An answer about the person.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Said {
+    token: String,
+    id: String,
+    value: String,
+}
+
+/// What became of it, and what somebody gets who is not asked any further.
+#[derive(Serialize)]
+pub(super) struct Heard {
+    taken: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    completion: Option<String>,
+}
+
+/// `POST /api/about`: an answer about the person. It is on disk when somebody's first answer to a pair is.
+pub(super) async fn about(site: Site, asked: Asked<Said>) -> Result<Json<Heard>, Failure> {
+    let Json(Said { token, id, value }) = asked?;
+    let machine = Arc::clone(&site.machine);
+    let taken =
+        site.journal.change(move |journal| journal.about(&token, &id, &value, machine.now_ms())).await??;
+    let completions = &site.settings.completions;
+    Ok(Json(match taken {
+        Taken::Kept => Heard { taken: "kept", completion: None },
+        Taken::ScreenedOut => Heard { taken: "screened", completion: completions.screened.clone() },
+        Taken::Full => Heard { taken: "full", completion: completions.full.clone() },
+    }))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Receipt {
+    receipt: String,
+}
+
+#[derive(Serialize)]
+pub(super) struct Withdrawn {
+    withdrawn: bool,
+}
+
+/// `POST /api/withdraw`: deletes all that is kept of whoever has this receipt.
+pub(super) async fn withdraw(site: Site, asked: Asked<Receipt>) -> Result<Json<Withdrawn>, Failure> {
+    let Json(Receipt { receipt }) = asked?;
+    site.journal.change(move |journal| journal.withdraw(&receipt)).await??;
+    Ok(Json(Withdrawn { withdrawn: true }))
 }
 
 #[derive(Serialize)]
@@ -145,5 +212,5 @@ pub(super) async fn finish(site: Site, asked: Asked<Token>) -> Result<Json<Compl
     let Json(Token { token }) = asked?;
     let machine = Arc::clone(&site.machine);
     site.journal.change(move |journal| journal.finish(&token, machine.now_ms())).await??;
-    Ok(Json(Completion { completion: site.settings.completion.clone() }))
+    Ok(Json(Completion { completion: site.settings.completions.finished.clone() }))
 }

@@ -5,10 +5,13 @@ use super::study_forms::forms;
 use crate::outcome::Outcome;
 use crate::terminal::{counted, say};
 use crate::{input, store};
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::Args;
+use isostudy_design::forms::Questionnaire;
 use isostudy_serve::download::{self, DownloadError};
 use isostudy_serve::export::{self, Given};
+use isostudy_serve::people;
+use isostudy_serve::record::About;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -22,6 +25,9 @@ pub(crate) struct Arguments {
     /// File to write, in the long format
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
+    /// File to write what people said of themselves to, which JSON files have
+    #[arg(long, value_name = "FILE")]
+    about: Option<PathBuf>,
 }
 
 /// Joins the page's downloads with the key into one file that `analyse` reads.
@@ -33,6 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let (file, key, _) = forms(&study)?;
     let mut all: BTreeMap<(String, u32), Given> = BTreeMap::new();
     let mut again = 0;
+    let mut about: BTreeMap<String, About> = BTreeMap::new();
     let downloads: Vec<Vec<PathBuf>> =
         arguments.downloads.iter().map(|path| files(path)).collect::<Result<_>>()?;
     for path in downloads.iter().flatten() {
@@ -53,10 +60,30 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         })?;
         ensure!(!given.is_empty(), "{}: no answers in it", place());
         export::lines(&given, &key).with_context(place)?;
+        if let Some((name, said)) = download::read_about(&text).with_context(place)? {
+            let wrong = said.iter().find(|(id, value)| {
+                let question = file.about.iter().find(|question| question.id == **id);
+                question.is_none_or(|question| !question.takes(value))
+            });
+            if let Some((id, value)) = wrong {
+                bail!("{}: about.{id} = {value:?}: the study asks no question that takes it", place());
+            }
+            about.insert(name, said);
+        }
         again += download::add(&mut all, given).with_context(place)?;
     }
     let given: Vec<Given> = all.into_values().collect();
     store::write_whole(&arguments.out, csv(&given, &key)?.as_bytes())?;
+    match &arguments.about {
+        Some(path) => {
+            let attention = Questionnaire::of(&study).map(|of| of.attention()).unwrap_or_default();
+            store::write_whole(path, people::about_csv(&file, &attention, &about).as_bytes())?;
+        }
+        None if about.values().any(|said| !said.is_empty()) => {
+            tell!("people said something of themselves; --about FILE writes it");
+        }
+        None => {}
+    }
     let repeated = if again > 0 { format!("; {again} came twice") } else { String::new() };
     let people = counted(participants(&given) as u64, "participant");
     tell!("{} of {people}{repeated}", counted(given.len() as u64, "answer"));

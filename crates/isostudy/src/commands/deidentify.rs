@@ -1,13 +1,14 @@
 //! `isostudy deidentify`: a server's answers without anything that leads to a person.
 
 use super::given_answers::{csv, participants};
-use super::study_forms::forms;
+use super::study_forms::{forms, no_forms};
 use crate::outcome::Outcome;
 use crate::terminal::say;
 use crate::{input, kept_answers, store};
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use isostudy_serve::{deidentify, journal};
+use isostudy_design::forms::Questionnaire;
+use isostudy_serve::{deidentify, journal, people};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -17,7 +18,7 @@ pub(crate) struct Arguments {
     /// Folder of the answers [default: answers/<study id>]
     #[arg(long, value_name = "DIR")]
     answers: Option<PathBuf>,
-    /// Folder to write answers.csv and codebook.md to
+    /// Folder to write answers.csv, codebook.md and, where people were asked about themselves, about.csv to
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
 }
@@ -41,9 +42,27 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         tell!("the study file was changed since the first answer; the codebook says what it says now");
     }
     let given = deidentify::deidentified(&stored.given);
+    let names = deidentify::names(&stored.given);
+    let questionnaire = Questionnaire::of(&study).with_context(|| no_forms(&study.path))?;
+    let asks = file.about.iter().any(|question| !question.is_free());
+    let about =
+        asks.then(|| people::shared_about_csv(&file, &questionnaire.attention(), &stored.about, &names));
     std::fs::create_dir_all(&arguments.out).with_context(|| arguments.out.display().to_string())?;
-    let codebook = deidentify::codebook(&file, (&stored.digest, &digest), participants(&given), given.len());
-    for (name, text) in [("answers.csv", csv(&given, &key)?), ("codebook.md", codebook)] {
+    let said = about.as_ref().map(|(_, said)| said.as_str());
+    let codebook = deidentify::codebook(
+        &file,
+        (&stored.digest, &digest),
+        participants(&given),
+        given.len(),
+        stored.departures,
+        said,
+    );
+    let mut files = vec![("answers.csv", csv(&given, &key)?), ("codebook.md", codebook)];
+    if let Some((about, said)) = about {
+        tell!("about.csv: {said}");
+        files.push(("about.csv", about));
+    }
+    for (name, text) in files {
         let path = arguments.out.join(name);
         store::write_whole(&path, text.as_bytes())?;
         say(&path.display().to_string())?;

@@ -2,16 +2,17 @@
 
 use super::bundle::{self, Made, stimuli, videos};
 use super::checked_study;
-use super::study_forms::forms;
+use super::study_forms::{forms, no_forms};
 use super::study_run::Run;
 use crate::kept_answers;
 use crate::outcome::Outcome;
 use crate::pipeline::Videos;
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use clap::Args;
+use isostudy_design::forms::Questionnaire;
 use isostudy_serve::journal::Loss;
 use isostudy_serve::page::MediaFormat;
-use isostudy_serve::{Limits, SHORTEST_TOKEN, Settings};
+use isostudy_serve::{Completions, Limits, SHORTEST_TOKEN, Settings};
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
@@ -69,8 +70,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         Some(token) => token.clone(),
         None => isostudy_serve::random_hex(16),
     };
+    let section = study.file.forms.as_ref().with_context(|| no_forms(&study.path))?;
+    let questionnaire = Questionnaire::of(&study).with_context(|| no_forms(&study.path))?;
     let settings = Settings {
-        completion: study.file.forms.as_ref().and_then(|forms| forms.completion.clone()),
+        completions: Completions {
+            finished: section.completion.clone(),
+            screened: section.completion_screened.clone(),
+            withdrawn: section.completion_withdrawn.clone(),
+            full: section.completion_full.clone(),
+        },
+        panel: section.panel,
+        quotas: questionnaire.quotas(),
+        attention: questionnaire.attention(),
         media,
         stimuli: stimuli(&out),
         answers: kept_answers::folder(&study, arguments.answers.as_ref()),

@@ -115,7 +115,7 @@ impl Pipeline<'_> {
                 step.tick(1);
             }
             writer.write(&format!("{BUNDLE}/forms.json"), &text)?;
-            let script = isostudy_serve::page::forms_js(&file, &forms_digest(&file)?, &media, false);
+            let script = isostudy_serve::page::forms_js(&file, &forms_digest(&file)?, &media, None);
             writer.write(&format!("{BUNDLE}/forms.js"), script.as_bytes())?;
             let index = isostudy_serve::page::index(&file);
             writer.write(&format!("{BUNDLE}/index.html"), index.as_bytes())?;

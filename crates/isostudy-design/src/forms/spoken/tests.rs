@@ -63,12 +63,12 @@ fn what_a_language_lacks_is_named() {
     two.consent = english()["consent"].clone();
     two.instructions = english()["instructions"].clone();
     two.choices = ["Left", "No preference", "Right"].map(Into::into);
-    assert_eq!(two.missing_texts(), [("de", vec!["title".to_owned(), "prompt".to_owned()])]);
+    assert_eq!(two.missing_texts(), [("de", vec!["prompt".to_owned(), "title".to_owned()])]);
     // A consent of its own is asked for in the other language too.
     two.consent = "Say yes.".into();
     two.choices[1] = "Equal".into();
     let [("de", keys)] = &two.missing_texts()[..] else { panic!("{:?}", two.missing_texts()) };
-    assert_eq!(keys, &["consent", "none", "title", "prompt"]);
+    assert_eq!(keys, &["consent", "none", "prompt", "title"]);
     let own: [(&str, &[(&str, &str)]); 1] =
         [("de", &[("consent", "Ja."), ("none", "Gleich"), ("title", "T"), ("prompt", "P")])];
     let whole = FormFile { texts: file(&["en", "de"], &own).texts, ..two };

@@ -8,7 +8,7 @@ use crate::outcome::Outcome;
 use crate::terminal::say;
 use anyhow::Result;
 use clap::Args;
-use isostudy_design::lint::{Fault, Rule, lint};
+use isostudy_design::lint::{Fault, Rule, lint, notices};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -45,6 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         ),
     }
     faults.extend(bundle_faults(&study, &results.join("bundle/stimuli"))?);
+    notices(&study).iter().for_each(|notice| tell!("{notice}"));
     faults.sort_by_key(|fault| fault.rule);
     if arguments.json {
         let entry = |fault: &Fault| {
