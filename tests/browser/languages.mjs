@@ -81,7 +81,7 @@ test('the pages of a German study hold no English word', async () => {
   assert.equal(await other.getByRole('button', { name: 'العربية' }).count(), 0, 'the address has chosen');
   await other.route('**/api/sessions', (route) => route.abort());
   await other.getByRole('button', { name: german.begin }).click();
-  await other.getByText(german.cannot_begin).waitFor();
+  await other.getByText(german.unreachable).waitFor();
   await look(other)('no study');
   await other.unroute('**/api/sessions');
   await other.getByRole('button', { name: german.begin }).click();
