@@ -13,7 +13,7 @@ use crate::read::LARGEST_FILE;
 use crate::value::{Participant, PersonColumn};
 use crate::words::{is_na, normalise};
 use isostudy_table::formula::unescape;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// Columns that were read, and whom they are about.
@@ -48,7 +48,7 @@ pub enum PersonColumnsError {
     },
     /// One person has two values.
     #[error(
-        "{}: row {row}: {participant} has {name} \"{value}\", and \"{first_value}\" in row {first}; a person has one value",
+        "{}: row {row}: {participant} has {value}, and \"{first_value}\" in row {first}; a person has one value",
         file.display()
     )]
     TwoValues {
@@ -60,9 +60,7 @@ pub enum PersonColumnsError {
         first: u64,
         /// The person.
         participant: String,
-        /// The column.
-        name: String,
-        /// The second value.
+        /// The column and the second value.
         value: String,
         /// The first value.
         first_value: String,
@@ -134,21 +132,20 @@ pub fn parse_person_columns(
     // By column and participant, the row that said it.
     let mut said = vec![vec![0_u64; participants.len()]; wanted.len()];
     let mut is_known = vec![false; participants.len()];
-    let mut others: HashMap<String, ()> = HashMap::new();
+    let mut others: HashSet<String> = HashSet::new();
     let mut two: Option<PersonColumnsError> = None;
     let visited = source.each(|record| {
         if record.row <= *header_row || record.is_blank() {
             return Ok(());
         }
         let (expected, found) = (header.len(), record.cells.len());
-        if found != expected && record.cells.iter().skip(expected).any(|cell| !is_blank(cell))
-            || found < expected
-        {
+        let beyond = record.cells.iter().skip(expected).any(|cell| !is_blank(cell));
+        if beyond || found < expected {
             return Err(Fault::CellCount { row: record.row, expected, found });
         }
         let id = cell(record, person, "participant")?;
         let Some(&participant) = by_id.get(id) else {
-            others.insert(id.to_owned(), ());
+            others.insert(id.to_owned());
             return Ok(());
         };
         is_known[participant] = true;
@@ -170,8 +167,7 @@ pub fn parse_person_columns(
                         row: record.row,
                         first: said[place][participant],
                         participant: shorten(id),
-                        name: shorten(&wanted[place]),
-                        value: shorten(value),
+                        value: format!("{} \"{}\"", shorten(&wanted[place]), shorten(value)),
                         first_value: shorten(first),
                     });
                 }

@@ -121,6 +121,9 @@ fn compare(a: &[f64], b: &[f64]) -> std::cmp::Ordering {
     differing.unwrap_or(std::cmp::Ordering::Equal)
 }
 
+/// The parameters that a pair touches, and the gradient by them of each of its outcomes.
+type Gradients = (Touched, [[f64; 4]; 3]);
+
 /// Of each person the attribute, and L^-1 s with I = L L': what their answers say beyond the common worths, in a unit in which the
 /// quadratic form of I^-1 is a sum of squares.
 fn people(
@@ -131,7 +134,7 @@ fn people(
     attribute: &Attribute,
 ) -> Result<Vec<(f64, Vec<f64>)>, FitError> {
     let layout = Layout::of(fit.model, pairs, fit.given_side);
-    let scores: BTreeMap<(usize, usize), (Touched, [[f64; 4]; 3])> = pairs
+    let scores: BTreeMap<(usize, usize), Gradients> = pairs
         .pairs
         .iter()
         .map(|pair| ((pair.left, pair.right), layout.scores((pair.left, pair.right), &fit.parameters)))

@@ -58,7 +58,7 @@ struct At {
 type Own = Vec<(usize, f64)>;
 
 /// X' V^-1 y of one person, V^-1 = 1 - ratio / (1 + n ratio) 11'.
-fn weighted(own: &Own, items: usize, ratio: f64, of: impl Fn(&(usize, f64)) -> f64) -> Vec<f64> {
+fn weighted(own: &[(usize, f64)], items: usize, ratio: f64, of: impl Fn(&(usize, f64)) -> f64) -> Vec<f64> {
     let pull = ratio / (1.0 + own.len() as f64 * ratio) * own.iter().map(&of).sum::<f64>();
     let mut sum = vec![0.0; items];
     own.iter().for_each(|rating| sum[rating.0] += of(rating) - pull);

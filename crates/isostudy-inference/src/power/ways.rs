@@ -29,8 +29,8 @@ pub enum Way {
 
 /// How far apart the cuts between ratings are, in log-odds: seven reach over 4.8, beyond which few differences are.
 const RATING: f64 = 0.8;
-/// The cuts are around this, the mean of Gumbel's distribution.
-const EULER: f64 = 0.577_215_664_901_532_9;
+/// The cuts are around this, near the mean of Gumbel's distribution.
+const CENTRE: f64 = 0.58;
 
 impl Way {
     /// All of them.
@@ -109,7 +109,7 @@ fn gumbel(random: &mut impl Rng) -> f64 {
 
 /// The rating of a thing with this utility, 1 to 7.
 fn rating(utility: f64) -> i64 {
-    (((utility - EULER) / RATING).round().clamp(-3.0, 3.0)) as i64 + 4
+    (((utility - CENTRE) / RATING).round().clamp(-3.0, 3.0)) as i64 + 4
 }
 
 #[cfg(test)]

@@ -81,9 +81,9 @@ fn mode(pairs: &Pairs, spread: f64, start: Vec<f64>) -> Mode {
     let size = pairs.items + 2;
     let posterior = |at: &[f64]| {
         let mut sum = Curvature::zero(size);
-        for place in 0..size {
+        for (place, value) in at.iter().enumerate() {
             let (precision, mean) = prior(pairs.items, place, spread);
-            let off = at[place] - mean;
+            let off = value - mean;
             sum.value -= 0.5 * precision * off * off;
             sum.gradient[place] = -precision * off;
             sum.information[place][place] = precision;
