@@ -2,6 +2,7 @@
 
 use crate::command::Folder;
 use crate::fixture::files;
+use serde_json::Value;
 use std::path::Path;
 
 /// A study of two methods, small enough for many runs.
@@ -113,4 +114,41 @@ fn what_does_not_fit_is_named_and_nothing_is_written() {
     );
     let run = folder.run(&[&power[..], &["--part", "1/3"]].concat());
     assert!(run.code == Some(2) && run.stderr.contains("--out"), "{}", run.stderr);
+}
+
+/// The parts of a simulation as jobs of a plan leave what one run leaves.
+#[test]
+fn a_simulation_by_jobs_is_the_simulation_in_one_run() {
+    let (folder, study) = (Folder::new(), study());
+    let plan = folder.succeed(&["plan", &study, "--out", "out", "--power", "3", "--json"]);
+    let plan: Value = serde_json::from_str(&plan.stdout).unwrap();
+    let jobs: Vec<&Value> =
+        plan["jobs"].as_array().unwrap().iter().filter(|job| job["kind"] == "simulation").collect();
+    let ids: Vec<&str> = jobs.iter().map(|job| job["id"].as_str().unwrap()).collect();
+    assert_eq!(ids, ["power/1-of-3", "power/2-of-3", "power/3-of-3", "power/all-of-3"]);
+    let job = |id: &str, digest: &Value| {
+        folder.run(&["job", &study, "--out", "out", id, "--digests", digest.as_str().unwrap()])
+    };
+    let early = job(ids[3], &jobs[3]["digest"]);
+    assert_eq!(early.code, Some(2));
+    assert!(early.stderr.contains("power/1-of-3 is not up to date"), "{}", early.stderr);
+    for (id, planned) in ids.iter().zip(&jobs) {
+        let done = job(id, &planned["digest"]);
+        assert!(done.code == Some(0) && done.stderr.contains(": made"), "{}", done.stderr);
+        assert!(job(id, &planned["digest"]).stderr.contains(": up to date"));
+        for output in planned["outputs"].as_array().unwrap() {
+            assert!(folder.path("out").join(output.as_str().unwrap()).is_file(), "{output}");
+        }
+    }
+    folder.succeed(&["design", "power", &study, "--out", "whole"]);
+    let by_jobs = files(&folder.path("out/power"));
+    for (name, bytes) in files(&folder.path("whole")) {
+        assert!(by_jobs.get(&name) == Some(&bytes), "{name}");
+    }
+    for wrong in ["power/4-of-3", "power/x-of-3", "power/0-of-3"] {
+        let refused = folder.run(&["job", &study, "--out", "out", wrong]);
+        assert!(refused.code == Some(2) && refused.stderr.contains("is no part of a simulation"), "{wrong}");
+    }
+    let other = job("power/1-of-3", &jobs[1]["digest"]);
+    assert!(other.code == Some(2) && other.stderr.contains("Make the plan again"), "{}", other.stderr);
 }

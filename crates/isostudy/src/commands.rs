@@ -17,6 +17,7 @@ pub(crate) mod pairs;
 pub(crate) mod plan;
 pub(crate) mod report;
 pub(crate) mod serve;
+mod simulation_jobs;
 pub(crate) mod study;
 pub(crate) mod table;
 pub(crate) mod turntable;

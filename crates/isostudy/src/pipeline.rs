@@ -57,7 +57,7 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard};
 
 /// Stages that only commands of their own make; a whole study leaves them in place.
-const ASKED_FOR: [&str; 5] = ["bench/", "bundle", "contact_sheet", "video/", "web"];
+const ASKED_FOR: [&str; 6] = ["bench/", "bundle", "contact_sheet", "power/", "video/", "web"];
 
 /// Which stages of meshes, animations and timings are made where they are not up to date; the others are only looked up.
 #[derive(Debug, Clone, PartialEq)]

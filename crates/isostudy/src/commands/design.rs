@@ -2,7 +2,7 @@
 
 mod check;
 mod forms;
-mod power;
+pub(super) mod power;
 mod rules;
 
 use crate::outcome::Outcome;

@@ -111,6 +111,13 @@ impl Simulation<'_> {
         part: Part,
         series: &[Series],
     ) -> Result<String> {
+        write_whole(path, &self.file(arguments, part, series)?)?;
+        let studies = grouped(series.iter().map(|of| of.studies.end - of.studies.start).sum());
+        Ok(format!("{}: {}, {studies} simulated studies", path.display(), named(part)))
+    }
+
+    /// The file of a part.
+    pub(super) fn file(&self, arguments: &impl Serialize, part: Part, series: &[Series]) -> Result<Vec<u8>> {
         let contents = Contents {
             command: self.command.into(),
             version: env!("CARGO_PKG_VERSION").into(),
@@ -124,9 +131,7 @@ impl Simulation<'_> {
         let sha256 = sha256(&serde_json::to_vec(&contents)?);
         let mut json = serde_json::to_vec(&File { schema: SCHEMA, sha256, contents })?;
         json.push(b'\n');
-        write_whole(path, &json)?;
-        let studies = grouped(series.iter().map(|of| of.studies.end - of.studies.start).sum());
-        Ok(format!("{}: {}, {studies} simulated studies", path.display(), named(part)))
+        Ok(json)
     }
 
     /// Reads parts of this simulation, in any order.

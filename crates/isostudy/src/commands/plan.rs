@@ -1,6 +1,7 @@
 //! `isostudy plan`: the jobs of a study, for a scheduler.
 
 use super::checked_study;
+use super::simulation_jobs::SimulationJob;
 use super::study_run::default_folder;
 use crate::outcome::Outcome;
 use crate::pipeline::{Pipeline, Planned, by_kind};
@@ -9,6 +10,7 @@ use crate::terminal::{counted, say};
 use crate::{input, recipe};
 use anyhow::Result;
 use clap::Args;
+use isostudy_inference::series::Part;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -23,6 +25,9 @@ pub(crate) struct Arguments {
     /// Folder for results [default: results/<study id>]
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Add the jobs of `isostudy design power` in so many parts, with the arguments that hold by themselves
+    #[arg(long, value_name = "PARTS", value_parser = clap::value_parser!(u64).range(1..=Part::MOST))]
+    power: Option<u64>,
     /// Print JSON: every job with what it needs, leaves, depends on and is expected to take
     #[arg(long)]
     json: bool,
@@ -47,7 +52,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let study = checked_study::load(&arguments.study)?;
     recipe::check(&study)?;
     let out = arguments.out.clone().unwrap_or_else(|| default_folder(&study));
-    let jobs = Pipeline::new(&study, Store::nowhere(&out), 1).planned()?;
+    let mut jobs = Pipeline::new(&study, Store::nowhere(&out), 1).planned()?;
+    for job in arguments.power.map_or(Vec::new(), SimulationJob::all) {
+        jobs.push(job.planned(&study)?);
+    }
     if arguments.json {
         let sha256 = sha256(&input::bytes(&study.path)?);
         let plan = Plan { schema: 1, study: arguments.study.clone(), sha256, out, jobs };

@@ -9,9 +9,11 @@ use crate::terminal::progress::Step;
 use crate::terminal::{counted, say};
 use crate::{answer_files, input, kept_answers, store};
 use anyhow::{Context, Result, bail, ensure};
-use clap::Args;
+use clap::{Args, Parser};
 use isostudy_design::Study;
-use isostudy_inference::power::{Assumptions, Spread, Way, blank, powers, simulated, spread_between_people};
+use isostudy_inference::power::{
+    Assumptions, Power, Spread, Way, blank, powers, simulated, spread_between_people,
+};
 use isostudy_inference::series::{Part, Series};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -298,6 +300,71 @@ fn merged(
     Ok((assumptions, parts.whole(blank)?))
 }
 
+/// The arguments that hold where only a study is given.
+#[derive(Debug, Parser)]
+struct Defaults {
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
+fn default_assumptions(study: &Study) -> Result<Assumptions> {
+    let words = [Path::new("power").as_os_str(), study.path.as_os_str()];
+    let planned = forms_section(study)?.participants as usize;
+    assumptions(&Defaults::parse_from(words).arguments, study, planned)
+}
+
+fn simulation(study: &Study) -> Simulation<'_> {
+    Simulation { command: "design power", study: Some(study) }
+}
+
+/// What is assumed where nothing but the study is given, for digests.
+///
+/// # Errors
+/// If the study has no forms, or its answers cannot be read.
+pub(in crate::commands) fn assumed(study: &Study) -> Result<impl Serialize + use<>> {
+    Ok(Simulated::from(default_assumptions(study)?))
+}
+
+/// The file that `--part` writes where nothing else is given.
+///
+/// # Errors
+/// As [`run`].
+pub(in crate::commands) fn part_file(study: &Study, part: Part) -> Result<Vec<u8>> {
+    let assumptions = default_assumptions(study)?;
+    let series = series(study, &assumptions, part)?;
+    simulation(study).file(&Simulated::from(assumptions), part, &series)
+}
+
+/// The files that `--merge` writes of all parts.
+///
+/// # Errors
+/// As [`run`].
+pub(in crate::commands) fn files_of_parts(
+    study: &Study,
+    paths: &[PathBuf],
+) -> Result<Vec<(String, Vec<u8>)>> {
+    let (assumptions, series) = merged(&simulation(study), study, paths)?;
+    files(&assumptions, &found(study, &assumptions, &series)?)
+}
+
+fn found(study: &Study, assumptions: &Assumptions, series: &[Series]) -> Result<Vec<Power>> {
+    let found = powers(study, assumptions, series).unwrap_or_default();
+    ensure!(!found.is_empty(), nothing(study));
+    Ok(found)
+}
+
+/// The figure and the tables.
+fn files(assumptions: &Assumptions, found: &[Power]) -> Result<Vec<(String, Vec<u8>)>> {
+    let figure = isostudy_report::power_figure(assumptions, found)?;
+    let mut files =
+        vec![("power.svg".to_owned(), figure.svg.into_bytes()), ("power.png".to_owned(), figure.png)];
+    for table in isostudy_report::power_tables(assumptions, found) {
+        files.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));
+        files.push((format!("{}.md", table.name), table.to_markdown().into_bytes()));
+    }
+    Ok(files)
+}
+
 /// Prints and writes how likely the study is to find a preference; or writes what a part of the simulation counted.
 ///
 /// # Errors
@@ -305,7 +372,7 @@ fn merged(
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let study = input::study(&arguments.study)?;
     let planned = forms_section(&study)?.participants as usize;
-    let simulation = Simulation { command: "design power", study: Some(&study) };
+    let simulation = simulation(&study);
     let (assumptions, series) = if arguments.merge.is_empty() {
         let assumptions = assumptions(arguments, &study, planned)?;
         let series = series(&study, &assumptions, arguments.part.unwrap_or(Part::WHOLE))?;
@@ -317,23 +384,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     } else {
         merged(&simulation, &study, &arguments.merge)?
     };
-    let found = powers(&study, &assumptions, &series).unwrap_or_default();
-    ensure!(!found.is_empty(), nothing(&study));
-
+    let found = found(&study, &assumptions, &series)?;
     let tables = isostudy_report::power_tables(&assumptions, &found);
-    let figure = isostudy_report::power_figure(&assumptions, &found)?;
     let folder = || Path::new("results").join(format!("{}-power", study.file.study.id));
     let out = arguments.out.clone().unwrap_or_else(folder);
     std::fs::create_dir_all(&out).with_context(|| out.display().to_string())?;
     origin::claim(&out, &study.path)?;
-    let mut files =
-        vec![("power.svg".to_owned(), figure.svg.into_bytes()), ("power.png".to_owned(), figure.png)];
-    for table in &tables {
-        files.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));
-        files.push((format!("{}.md", table.name), table.to_markdown().into_bytes()));
-    }
-    for (name, bytes) in &files {
-        store::write_whole(&out.join(name), bytes)?;
+    for (name, bytes) in files(&assumptions, &found)? {
+        store::write_whole(&out.join(name), &bytes)?;
     }
     say(&tables[2].to_markdown())?;
     let told = participants_told(&assumptions.participants, planned);
