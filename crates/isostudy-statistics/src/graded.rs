@@ -172,7 +172,7 @@ impl Layout {
         };
         let logistic = |z: f64| 1.0 / (1.0 + (-z).exp());
         let (a, b) = (upper, lower);
-        let at = |of: Option<(f64, f64, Option<(usize, f64)>)>| of.map_or(0.0, |(z, ..)| logistic(z));
+        let at = |of: Option<End>| of.map_or(0.0, |(z, ..)| logistic(z));
         let chance = at(a) - at(b);
         local.value = chance.ln();
         let mut gradient = vec![0.0; size];
@@ -222,6 +222,9 @@ impl Layout {
         }
     }
 }
+
+/// An end of the range of an answer: where F is taken, its derivative by u, and the parameter of its cut with its derivative.
+type End = (f64, f64, Option<(usize, f64)>);
 
 /// Fits a model of steps.
 ///
