@@ -49,7 +49,7 @@ fn six_schools_by_subject_as_r_has_it() {
     // sqrt(diag(vcov)), and the multinomial log-likelihood; -3964.378 without Z.
     let (ballots, covariates) = schools();
     let found = person_model(6, &ballots, &covariates).unwrap();
-    close(found.log_likelihood, -3938.664_018_263_2);
+    close(found.log_likelihood, -3_938.664_018_263_2);
     let worths = [1.257_885_522_485_4, -0.152_041_190_400_2, 0.246_788_869_982_1, 0.187_455_246_152_1];
     worths.into_iter().zip(&found.log_worths[1..]).for_each(|(want, &got)| close(got, want));
     let slopes = [
