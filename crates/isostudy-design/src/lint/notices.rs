@@ -25,7 +25,8 @@ fn unsaid(forms: &FormsSection) -> Vec<String> {
         ),
     ]
     .into_iter()
-    .filter_map(|(is_missing, text)| is_missing.then(|| text.to_owned()))
+    .filter(|(is_missing, _)| *is_missing)
+    .map(|(_, text)| text.to_owned())
     .collect()
 }
 

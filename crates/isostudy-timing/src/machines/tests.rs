@@ -50,7 +50,10 @@ fn run(model: &str, times: &[(&str, f64)]) -> BenchRun {
     run
 }
 
-fn found(machines: &[(&str, &str, &[(&str, f64)])]) -> Machines {
+/// A machine's name and model, and its times.
+type Planted<'a> = (&'a str, &'a str, &'a [(&'a str, f64)]);
+
+fn found(machines: &[Planted<'_>]) -> Machines {
     Machines::of(machines.iter().map(|(name, model, times)| ((*name).into(), run(model, times))).collect())
 }
 

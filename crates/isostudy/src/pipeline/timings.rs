@@ -119,7 +119,7 @@ impl Pipeline<'_> {
     }
 
     /// The runs of the machines that the study names, with their stamps; and the names of those that have none of the study as it is.
-    pub(super) fn machine_runs(&self) -> Result<(Vec<(String, Stamp)>, Vec<String>)> {
+    pub(super) fn machine_runs(&self) -> Result<(Vec<OnMachine>, Vec<String>)> {
         let (mut runs, mut missing) = (Vec::new(), Vec::new());
         for name in &self.study.file.benchmark.machines {
             let length = PlanLength::On(name.clone());
@@ -274,6 +274,9 @@ impl Pipeline<'_> {
         configurations.iter().map(workload).collect()
     }
 }
+
+/// What the study calls a machine, and the run that it measured.
+pub(super) type OnMachine = (String, Stamp);
 
 /// Where the runs of other machines are.
 const MACHINES: &str = "bench/machine/";

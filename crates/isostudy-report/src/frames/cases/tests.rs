@@ -58,7 +58,7 @@ fn what_is_written_is_read_again() {
     for (case, (number, measures)) in cases.iter().zip(&read) {
         assert_eq!(case.case.number, *number);
         let triangles = measures.as_ref().map(|of| of[1]);
-        let want = (*number != 3).then(|| (CaseQuantity::Triangles, Some(100.0 + *number as f64)));
+        let want = (*number != 3).then_some((CaseQuantity::Triangles, Some(100.0 + *number as f64)));
         assert_eq!(triangles, want);
     }
     assert_eq!(timed_cases(bytes).unwrap_err().to_string(), "not read as Parquet: it has no column machine");

@@ -209,7 +209,7 @@ fn of_who_withdraws_nothing_is_left_in_any_file() {
     for trace in traces {
         assert!(!is_left(folder.path(), trace).is_empty(), "{trace} was there");
     }
-    let receipt = gone.token[..16].as_bytes().chunks(4).map(|part| std::str::from_utf8(part).unwrap());
+    let receipt = gone.token.as_bytes()[..16].chunks(4).map(|part| std::str::from_utf8(part).unwrap());
     let receipt = receipt.collect::<Vec<_>>().join(" - ").to_uppercase();
     assert_eq!(runtime.block_on(handle.change(move |journal| journal.withdraw(&receipt))).unwrap(), Ok(()));
     for trace in traces {
