@@ -29,8 +29,7 @@ fn every_key_is_read() {
     let section = with(
         "[analysis]\ndeclared = 2026-11-21\nfirst_answer = \"2026-12-01\"\nanswers_known = false\nlevel = 0.01\nmargin = 0.3\n\
          families = \"one\"\nprimary = [\"U-I\", \"U-I sphere\"]\n\
-         reference = \"bi\"\nexclude = [\"one-sided\", \"controls\", \"repeats\", \"time\", \"outlying\"]\n\
-         people = \"people.csv\"\nsubgroups = [\"expertise\"]\ncovariates = [\"age\"]",
+         reference = \"bi\"\nexclude = [\"one-sided\", \"controls\", \"repeats\", \"time\", \"outlying\"]",
     );
     let expected = AnalysisSection {
         declared: Some(day("2026-11-21")),
@@ -48,9 +47,9 @@ fn every_key_is_read() {
             Exclusion::Time,
             Exclusion::Outlying,
         ],
-        people: Some("people.csv".into()),
-        subgroups: vec!["expertise".into()],
-        covariates: vec!["age".into()],
+        people: None,
+        subgroups: Vec::new(),
+        covariates: Vec::new(),
     };
     assert_eq!(section.unwrap(), expected);
     assert!(with("[analysis]\ndeclared = 2026-11-21\nanswers_known = true").unwrap().answers_known);
