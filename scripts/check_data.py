@@ -1,7 +1,8 @@
 """Reads data/*.parquet of a results folder with pyarrow or DuckDB and compares it with the tables beside it.
 
 Every file must have the columns and types of docs/data.md; answers must add up to tables/preference_groups.csv and
-tables/answer_counts.csv; meshes and times to tables/benchmark.csv. What has no table is compared with nothing, and said.
+tables/answer_counts.csv; meshes and times to tables/benchmark.csv; cases of a sweep to its four tables. What has no table is
+compared with nothing, and said.
 
 usage: python3 scripts/check_data.py RESULTS [pyarrow|duckdb]
 Exit code 0: all agree; 1: something differs; 77: the reader is not installed.
@@ -10,6 +11,7 @@ Exit code 0: all agree; 1: something differs; 77: the reader is not installed.
 import csv
 import fnmatch
 import importlib
+import math
 import pathlib
 import statistics
 import sys
@@ -136,6 +138,74 @@ def check_times(results, rows, problems):
     print(f"times: {len(rows)} rows, {len(lines)} rows of benchmark.csv")
 
 
+MEASURES = {
+    "sample points": "samples", "triangles": "triangles", "distance to the isosurface": "distance_mean",
+    "distance to the mesh": "distance_to_mesh_mean", "radius ratio": "radius_ratio_mean",
+}
+
+
+def mean(values):
+    """The geometric mean of those above 0, and how many they are."""
+    logs = [math.log(value) for value in values if value is not None and value > 0]
+    return (math.exp(math.fsum(logs) / len(logs)) if logs else None), len(logs)
+
+
+def slope(points):
+    """Of least squares on logarithms."""
+    logs = [(math.log(x), math.log(y)) for x, y in points]
+    x0, y0 = (statistics.fmean(of) for of in zip(*logs))
+    return sum((x - x0) * (y - y0) for x, y in logs) / sum((x - x0) ** 2 for x, _ in logs)
+
+
+def check_sweep(results, read, problems):
+    """The rows of sweep/meshes against every mean and exponent of the tables."""
+    rows = {}
+    own = ["case", "cells_per_axis", "left_out", "object.*", "method.*"]
+    known = own + [column for column, _ in documented("meshes")]
+    for path in sorted((results / "sweep" / "meshes").glob("object=*/method=*/*.parquet")):
+        pair = "_".join(part.split("=", 1)[1] for part in path.parts[-3:-1])
+        types, found = read(path)
+        rows.setdefault(pair, []).extend(found)
+        strange = [name for name in types if not any(fnmatch.fnmatch(name, pattern) for pattern in known)]
+        problems.extend(f"sweep: column {name} is not in docs/data.md" for name in strange)
+    if not rows:
+        return
+    for pair, own in rows.items():
+        if sorted(row["case"] for row in own) != list(range(len(own))):
+            problems.append(f"sweep: the cases of {pair} are not 0 to {len(own) - 1}")
+    column = lambda row, quantity: row.get("region_" + MEASURES[quantity], row.get(MEASURES[quantity]))
+    compared = 0
+
+    def compare(line, found, name):
+        nonlocal compared
+        compared += 1
+        wanted = float(line[name])
+        if found is None or abs(found / wanted - 1) > 1e-9:
+            problems.append(f"sweep: {name} of {line} is {found}")
+
+    for line in table(results, "sweep_cases"):
+        compare(line, float(len(rows[line["id"]])), "cases")
+    at = {}
+    for line in table(results, "sweep_resolutions"):
+        if line["quantity"] not in MEASURES:
+            continue
+        own = [row for row in rows[line["id"]] if row["cells_per_axis"] == int(line["cells"])]
+        found, cases = mean(column(row, line["quantity"]) for row in own)
+        compare(line, found, "mean")
+        compare(line, float(cases), "cases")
+        at.setdefault((line["id"], line["quantity"]), []).append((int(line["cells"]), found))
+    for line in table(results, "sweep_exponents"):
+        if line["quantity"] in MEASURES:
+            compare(line, slope(at[line["id"], line["quantity"]]), "exponent")
+    for line in table(results, "sweep_settings"):
+        if line["quantity"] in MEASURES:
+            said = lambda value: str(value).lower() if isinstance(value, bool) else str(value)
+            value = line["value"].strip('"')
+            own = [row for row in rows[line["id"]] if said(row[line["setting"]]) == value]
+            compare(line, mean(column(row, line["quantity"]) for row in own)[0], "mean")
+    print(f"sweep: {sum(map(len, rows.values()))} rows, {compared} numbers of four tables")
+
+
 CHECKS = {"answers": check_answers, "meshes": check_meshes, "times": check_times}
 
 
@@ -155,6 +225,7 @@ def main():
         types, rows = read(path)
         check_columns(path.stem, types, problems)
         CHECKS[path.stem](results, rows, problems)
+    check_sweep(results, read, problems)
     print("\n".join(problems[:50]))
     sys.exit(1 if problems else 0)
 

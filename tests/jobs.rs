@@ -298,6 +298,26 @@ fn snakemake_and_hyperqueue_make_the_same_files() {
     assert!(run.code.is_some_and(|code| code < 2));
 }
 
+/// The job of a machine that the study names goes there, or nowhere: elsewhere its times would have a wrong name.
+#[test]
+fn a_machines_job_is_placed_by_its_name_or_left() {
+    let fixture = Fixture::new();
+    fixture.edit("aa_iterations = 4", "aa_iterations = 4\nmachines = [\"desk\", \"rack\"]");
+    let plan = fixture.folder().join("plan.json");
+    fs::write(&plan, fixture.succeed("plan", &["--json"]).stdout).unwrap();
+    let program = "import sys, batches\n\
+                   all = batches.read(sys.argv[1], 60)\n\
+                   placed = batches.reachable(all, {'desk'})\n\
+                   print(*[batch.jobs[0]['id'] for batch in placed if batch.machine])\n\
+                   print(len(all) - len(placed), all[-1] is placed[-1], len(placed[-1].needs) == len(placed) - 1)";
+    let mut command = std::process::Command::new("python3");
+    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/workflow");
+    command.args(["-c", program]).arg(&plan).env("PYTHONPATH", scripts);
+    let run = Run::succeed(&mut command);
+    assert_eq!(run.stdout.lines().collect::<Vec<_>>(), ["bench/machine/desk", "1 True True"]);
+    assert_eq!(run.stderr.trim_end(), "bench/machine/rack: left to machine rack");
+}
+
 /// Of the whole folder one run is in charge, beside which no job works.
 #[test]
 fn a_job_and_a_whole_run_do_not_work_on_one_folder() {

@@ -190,7 +190,9 @@ values = [0.0, 5.0]
     study(&folder);
     let cases = table(&folder, "sweep_cases");
     assert_eq!((cases[0]["cases"].as_str(), cases[0]["left_out"].as_str()), ("4", "2"));
+    assert!(!folder.path("out/tables/sweep_exponents.csv").exists(), "of what is left no exponent is made");
     let lines = table(&folder, "sweep_resolutions");
+    assert!(lines.iter().all(|row| row["cases"] == "1" && row["missing"] == "1"), "{lines:?}");
     let of = |quantity: &str| lines.iter().filter(|row| row["quantity"] == quantity).count();
     assert_eq!((of("triangles"), of("time in seconds")), (2, 2));
     assert!(

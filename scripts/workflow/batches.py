@@ -69,6 +69,18 @@ def with_first_costs(plan):
         os.replace(written, path)
 
 
+def reachable(batches, machines):
+    """The batches that a scheduler can place. A job of a machine that it cannot choose is left to whoever sits there: elsewhere, its times
+    would have a wrong name. The report then says that this machine has not measured."""
+    placed = [batch for batch in batches if batch.machine is None or batch.machine in machines]
+    for batch in placed:
+        batch.needs = [need for need in batch.needs if need in placed]
+    for batch in batches:
+        if batch not in placed:
+            print(f"{batch.jobs[0]['id']}: left to machine {batch.machine}", file=sys.stderr)
+    return placed
+
+
 def forget(batches):
     """Removes the markers of other plans, and those of batches whose files are gone."""
     plan = batches[0].plan

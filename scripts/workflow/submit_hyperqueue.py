@@ -60,6 +60,8 @@ def main():
     arguments = parser.parse_args()
     batches = plans.read(arguments.plan, arguments.seconds)
     plans.forget(batches)
+    # Its workers have no names that a plan could know.
+    batches = plans.reachable(batches, {})
     if arguments.server:
         is_done = submit(Client(arguments.server), batches, arguments)
     else:

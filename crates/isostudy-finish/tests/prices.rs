@@ -118,7 +118,7 @@ fn kept(of: &TopologyReport) -> [i64; 5] {
 }
 
 #[test]
-#[ignore = "prints times; takes a minute"]
+#[ignore = "a minute: run by make test-long; prints times"]
 fn what_each_step_gives_for_its_cost() {
     println!(
         "| object | mesh | extraction, ms | finishing, ms | triangles | radius ratio | least angle, deg | mean distance | largest | largest \

@@ -26,6 +26,15 @@ pub enum CaseQuantity {
     Seconds,
 }
 
+/// What is measured of a case's mesh.
+const OF_MESHES: [CaseQuantity; 5] = [
+    CaseQuantity::Samples,
+    CaseQuantity::Triangles,
+    CaseQuantity::Distance,
+    CaseQuantity::DistanceToMesh,
+    CaseQuantity::RadiusRatio,
+];
+
 /// Sums over the cases of a sweep.
 #[derive(Debug, Clone)]
 pub struct SweepSums<'s> {
@@ -162,11 +171,17 @@ impl<'s> SweepSums<'s> {
                     self.add_value(pair, number, (quantity, None), value);
                 }
             }
-            None => self.pairs[pair].left_out += 1,
+            None => {
+                self.pairs[pair].left_out += 1;
+                // Means of what is left are not comparable from one resolution to the next.
+                for quantity in OF_MESHES {
+                    self.add_value(pair, number, (quantity, None), None);
+                }
+            }
         }
     }
 
-    /// Adds a case's median time in seconds on a machine; `None` where it could not be timed.
+    /// Adds a case's median time in seconds on a machine; `None` where it could not be timed, or has no mesh.
     pub fn add_time(&mut self, pair: usize, number: u64, machine: &str, seconds: Option<f64>) {
         let place = self.machines.iter().position(|known| known == machine).unwrap_or_else(|| {
             self.machines.push(machine.to_owned());
@@ -313,6 +328,7 @@ mod tests {
             found.lines.iter().find(of).unwrap().clone()
         };
         assert_eq!(line(&found, "ss_bi").growth, None);
+        assert_eq!(line(&found, "ss_bi").points.iter().map(|point| point.missing).sum::<u64>(), 1);
         assert!(line(&found, "ss_bu").growth.is_some());
         let study = swept("listed");
         let sweep = study.sweep().unwrap();

@@ -1,5 +1,7 @@
 //! Extraction of one chunk after the other.
 
+mod warm_up;
+
 use std::fmt;
 
 use glam::Vec3;
@@ -15,8 +17,6 @@ use super::relative::{self, Seen, back};
 use super::settings::{ChunkSettings, Normals};
 use super::settled::{MOST_EXTRA, Settled};
 use super::world::{Place, World};
-#[cfg(feature = "tetrahedra")]
-use crate::clustering::guard::Guard;
 use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
 use crate::extractor::{Extractor, Way};
@@ -27,7 +27,7 @@ use crate::memory::refill;
 use crate::method::{Method, MethodError};
 use crate::placement::FieldTargets;
 use crate::sampling::level::Level;
-use crate::settings::{Clustering, ExtractSettings, Placement, Positions, Topology};
+use crate::settings::{ExtractSettings, Placement, Positions};
 use crate::source::Source;
 use crate::surface::normals::accumulate;
 
@@ -176,57 +176,6 @@ impl ChunkExtractor {
             targets: FieldTargets::default(),
             settled: Settled::default(),
         })
-    }
-
-    /// Makes room for windows with so many vertices and twice as many triangles, so that not even a surface larger than all
-    /// before allocates; and makes the tables that are made otherwise when a point first needs them. A window is larger than its chunk: 36³ cells for 32³, body-centred.
-    ///
-    /// # Errors
-    /// [`ChunkError::Extract`] if there is no memory.
-    pub fn reserve(&mut self, vertices: usize) -> Result<(), ChunkError> {
-        let (mesh, trace) = (&mut self.extraction.mesh, &mut self.extractor.trace);
-        mesh.positions.try_reserve(vertices)?;
-        mesh.normals.try_reserve(vertices)?;
-        mesh.triangles.try_reserve(2 * vertices)?;
-        trace.keys.try_reserve(vertices)?;
-        trace.cells.try_reserve(2 * vertices)?;
-        self.numbers.try_reserve(vertices)?;
-        self.complete_tables();
-        Ok(())
-    }
-
-    /// Makes the tables of the method, and buffers for chunks of so many cells a side, by extracting a ball in one. The first chunk then takes
-    /// as long as any. Nothing that it makes can be seen.
-    ///
-    /// # Errors
-    /// [`ChunkError::Cells`] if there is no such chunk, [`ChunkError::Extract`] if there is no memory.
-    pub fn warm_up(&mut self, cells: u32) -> Result<(), ChunkError> {
-        self.complete_tables();
-        let first = match &self.world.place {
-            Place::Endless(grid) => grid.chunk([0; 3], cells),
-            Place::Box(_) => self.grid(cells).next().unwrap_or_default(),
-        };
-        self.check(first)?;
-        let bounds = self.lattice(first)?.sampled_bounds();
-        let ball = Ball {
-            centre: (bounds.min + bounds.max) * 0.5,
-            radius: 0.4 * bounds.size().min_element(),
-            isovalue: self.how.settings.isovalue,
-        };
-        self.of_field(&ball, first, Control::default(), &mut Chunk::default())
-    }
-
-    /// Makes the tables of integrated clustering that are made otherwise when a point first needs them.
-    fn complete_tables(&self) {
-        #[cfg(feature = "tetrahedra")]
-        {
-            let ByWindow { arrangement, settings, way, .. } = &self.how;
-            let merges =
-                settings.clustering == Clustering::Integrated && settings.topology == Topology::Guarded;
-            if way.is_none() && merges {
-                Guard::get(*arrangement).complete();
-            }
-        }
     }
 
     /// What its chunks are chunks of.
@@ -662,19 +611,6 @@ impl ChunkExtractor {
             accumulate(&mesh.positions, &mesh.triangles, &mut mesh.normals);
         }
         Ok(is_settled)
-    }
-}
-
-/// A ball that is there to be extracted once.
-struct Ball {
-    centre: Vec3,
-    radius: f32,
-    isovalue: f32,
-}
-
-impl StudyField for Ball {
-    fn sample(&self, p: Vec3) -> f32 {
-        self.isovalue + self.radius - (p - self.centre).length()
     }
 }
 

@@ -1,7 +1,7 @@
 //! `isostudy job`: jobs of a study, beside others on the same folder.
 
 use super::checked_study;
-use super::simulation_jobs::SimulationJob;
+use super::simulation_jobs::{PowerJob, PowerJobs};
 use super::study_run::{Run, default_folder, with_page};
 use crate::outcome::Outcome;
 use crate::pipeline::{Pipeline, REPORT};
@@ -61,11 +61,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let out = run.out.clone().unwrap_or_else(|| default_folder(&study));
     let store = Store::open_beside(&out, run.force)?;
     origin::claim(&out, &study.path)?;
-    let simulations = ids.iter().map(|id| SimulationJob::of(id)).collect::<Result<Vec<_>>>()?;
+    let simulations = ids.iter().map(|id| PowerJob::of(id)).collect::<Result<Vec<_>>>()?;
     if simulations.iter().any(Option::is_some) {
+        let power = PowerJobs::of(&study)?;
         for (place, (id, job)) in ids.iter().zip(&simulations).enumerate() {
             let Some(job) = job else { bail!("{id}: give simulations a command of their own") };
-            let stamp = job.carry_out(&study, &store, digests.get(place))?;
+            let stamp = power.carry_out(*job, &store, digests.get(place))?;
             let done = if stamp.redone { "made" } else { "up to date" };
             tell!("{id}: {done}");
         }

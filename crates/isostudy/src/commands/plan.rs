@@ -1,7 +1,7 @@
 //! `isostudy plan`: the jobs of a study, for a scheduler.
 
 use super::checked_study;
-use super::simulation_jobs::SimulationJob;
+use super::simulation_jobs::PowerJobs;
 use super::study_run::default_folder;
 use crate::outcome::Outcome;
 use crate::pipeline::{Pipeline, Planned, by_kind};
@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     /// Folder for results [default: results/<study id>]
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Add the jobs of `isostudy design power` in so many parts, with the arguments that hold by themselves
+    /// Add the jobs of `isostudy design power` in so many parts, with its default arguments
     #[arg(long, value_name = "PARTS", value_parser = clap::value_parser!(u64).range(1..=Part::MOST))]
     power: Option<u64>,
     /// Print JSON: every job with what it needs, leaves, depends on and is expected to take
@@ -53,8 +53,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     recipe::check(&study)?;
     let out = arguments.out.clone().unwrap_or_else(|| default_folder(&study));
     let mut jobs = Pipeline::new(&study, Store::nowhere(&out), 1).planned()?;
-    for job in arguments.power.map_or(Vec::new(), SimulationJob::all) {
-        jobs.push(job.planned(&study)?);
+    if let Some(parts) = arguments.power {
+        jobs.extend(PowerJobs::of(&study)?.planned(parts));
     }
     if arguments.json {
         let sha256 = sha256(&input::bytes(&study.path)?);

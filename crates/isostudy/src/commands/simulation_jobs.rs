@@ -2,25 +2,32 @@
 
 use super::design::power;
 use crate::pipeline::Planned;
-use crate::source_digests::SIMULATIONS;
+use crate::source_digests::{SIMULATIONS, TABLES};
 use crate::store::{Inputs, Stamp, Store};
 use anyhow::{Context, Result, bail};
 use isostudy_design::Study;
+use isostudy_inference::power::Assumptions;
 use isostudy_inference::series::Part;
 
 /// What the ids of these jobs begin with.
 const POWER: &str = "power/";
-/// Bytes that a process of a simulation takes.
+/// Bytes that a process of a simulation is given: it took 18 MB of 1,000 people and 27 questions.
 const BYTES: u64 = 256 << 20;
 
-/// A job of a simulation: one part of it, or what follows from so many parts.
+/// The simulation of a study's power, with the assumptions that hold where nothing but the study is given.
+pub(super) struct PowerJobs<'s> {
+    study: &'s Study,
+    assumptions: Assumptions,
+}
+
+/// One part, or what follows from so many parts.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum SimulationJob {
+pub(super) enum PowerJob {
     Part(Part),
     All(u64),
 }
 
-impl SimulationJob {
+impl PowerJob {
     /// The job with an id, such as `power/3-of-20` or `power/all-of-20`; `None` of a job that is no simulation.
     ///
     /// # Errors
@@ -39,64 +46,76 @@ impl SimulationJob {
         })
     }
 
-    /// All jobs of a simulation in so many parts: the parts, then what follows from them.
-    pub(super) fn all(parts: u64) -> Vec<Self> {
-        let part = |number| Part::new(number, parts).map(Self::Part);
-        (1..=parts).filter_map(part).chain([Self::All(parts)]).collect()
-    }
-
     fn id(self) -> String {
         match self {
             Self::Part(part) => format!("{POWER}{}-of-{}", part.number(), part.of()),
             Self::All(of) => format!("{POWER}all-of-{of}"),
         }
     }
+}
 
-    /// The file of a part.
-    fn file(part: Part) -> String {
-        format!("{POWER}parts/{}-of-{}.json", part.number(), part.of())
-    }
+fn parts(of: u64) -> impl Iterator<Item = Part> {
+    (1..=of).filter_map(move |number| Part::new(number, of))
+}
 
-    fn inputs(self, study: &Study) -> Result<Inputs> {
-        Ok(Inputs::of_sources(SIMULATIONS)
-            .text("study", &study.sha256)
-            .value("assumed", &power::assumed(study)?)
-            .text("job", &self.id()))
-    }
+/// The file of a part.
+fn file(part: Part) -> String {
+    format!("{POWER}parts/{}-of-{}.json", part.number(), part.of())
+}
 
-    /// As a scheduler needs to know it. How long it takes is not known before.
+impl<'s> PowerJobs<'s> {
+    /// Of a study. Where it has answers, the spread between people is estimated from them, which is said.
     ///
     /// # Errors
-    /// If the study asks nothing.
-    pub(super) fn planned(self, study: &Study) -> Result<Planned> {
-        let needs = match self {
-            Self::Part(_) => Vec::new(),
-            Self::All(of) => (1..=of).filter_map(|n| Some(Self::Part(Part::new(n, of)?).id())).collect(),
-        };
-        let outputs = match self {
-            Self::Part(part) => vec![Self::file(part)],
-            Self::All(_) => vec![format!("{POWER}power.svg")],
-        };
-        Ok(Planned {
-            id: self.id(),
-            kind: "simulation",
-            needs,
-            inputs: vec![study.path.display().to_string()],
-            outputs,
-            digest: self.inputs(study)?.finish(),
-            exclusive: false,
-            machine: None,
-            expected_s: None,
-            expected_bytes: Some(BYTES),
-        })
+    /// If the study asks nothing, or its answers cannot be read.
+    pub(super) fn of(study: &'s Study) -> Result<Self> {
+        Ok(Self { study, assumptions: power::default_assumptions(study)? })
     }
 
-    /// Does the job, unless it is done.
+    fn inputs(&self, job: PowerJob) -> Inputs {
+        let sources = match job {
+            PowerJob::Part(_) => SIMULATIONS,
+            PowerJob::All(_) => TABLES,
+        };
+        Inputs::of_sources(sources)
+            .text("simulated by", &SIMULATIONS.concat())
+            .text("study", &self.study.sha256)
+            .value("assumed", &power::assumed(&self.assumptions))
+            .text("job", &job.id())
+    }
+
+    /// All jobs of a simulation in so many parts, as a scheduler needs to know them. How long they take is not known before.
+    pub(super) fn planned(&self, of: u64) -> Vec<Planned> {
+        let planned = |job: PowerJob| {
+            let (needs, outputs) = match job {
+                PowerJob::Part(part) => (Vec::new(), vec![file(part)]),
+                PowerJob::All(of) => (
+                    parts(of).map(|part| PowerJob::Part(part).id()).collect(),
+                    vec![format!("{POWER}power.svg"), format!("{POWER}power.png")],
+                ),
+            };
+            Planned {
+                id: job.id(),
+                kind: "simulation",
+                needs,
+                inputs: vec![self.study.path.display().to_string()],
+                outputs,
+                digest: self.inputs(job).finish(),
+                exclusive: false,
+                machine: None,
+                expected_s: None,
+                expected_bytes: Some(BYTES),
+            }
+        };
+        parts(of).map(PowerJob::Part).chain([PowerJob::All(of)]).map(planned).collect()
+    }
+
+    /// Does a job, unless it is done.
     ///
     /// # Errors
     /// If the digest is another than was planned; if a part that is needed was not simulated; as the simulation.
-    pub(super) fn carry_out(self, study: &Study, store: &Store, digest: Option<&String>) -> Result<Stamp> {
-        let (id, inputs) = (self.id(), self.inputs(study)?);
+    pub(super) fn carry_out(&self, job: PowerJob, store: &Store, digest: Option<&String>) -> Result<Stamp> {
+        let (id, inputs) = (job.id(), self.inputs(job));
         let now = inputs.clone().finish();
         if let Some(planned) = digest
             && *planned != now
@@ -104,24 +123,24 @@ impl SimulationJob {
             bail!(
                 "{id}: {} or its answers have changed since the plan was made: the job's digest is {now}, and no longer {planned}. \
                  Make the plan again",
-                study.path.display()
+                self.study.path.display()
             );
         }
-        match self {
-            Self::Part(part) => store.stage(&id, inputs, |writer| {
-                writer.write(&Self::file(part), &power::part_file(study, part)?)
+        match job {
+            PowerJob::Part(part) => store.stage(&id, inputs, |writer| {
+                writer.write(&file(part), &power::part_file(self.study, &self.assumptions, part)?)
             }),
-            Self::All(of) => {
+            PowerJob::All(of) => {
                 let mut paths = Vec::new();
-                for part in (1..=of).filter_map(|number| Part::new(number, of)) {
-                    let needed = Self::Part(part);
-                    if store.peek(&needed.id(), needed.inputs(study)?).is_none() {
+                for part in parts(of) {
+                    let needed = PowerJob::Part(part);
+                    if store.peek(&needed.id(), self.inputs(needed)).is_none() {
                         bail!("{} is not up to date, and job {id} needs it: it comes first", needed.id());
                     }
-                    paths.push(store.root().join(Self::file(part)));
+                    paths.push(store.root().join(file(part)));
                 }
                 store.stage(&id, inputs, |writer| {
-                    for (name, bytes) in power::files_of_parts(study, &paths)? {
+                    for (name, bytes) in power::files_of_parts(self.study, &paths)? {
                         writer.write(&format!("{POWER}{name}"), &bytes)?;
                     }
                     Ok(())

@@ -19,6 +19,7 @@ use isostudy_design::sweep::{Case, Sweep, Swept};
 use isostudy_extract::{Execution, Extractor};
 use isostudy_inference::cases::{SweepFound, SweepSums};
 use isostudy_report::{CaseMesh, CaseTimes, LongFrame, case_meshes, case_times, measured_cases, timed_cases};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -217,15 +218,21 @@ impl<'a> Pipeline<'a> {
             let in_region = self.study.object(block.configuration).region.is_some();
             let rows = |of: Of| self.store.read(&self.case_block(&block, of, &step)?, ".parquet");
             let file = block.file(Of::Meshes);
+            let mut without_mesh = BTreeSet::new();
             for (number, measures) in measured_cases(rows(Of::Meshes)?, in_region).context(file)? {
                 sums.add(block.pair, number, measures.as_deref());
+                if measures.is_none() {
+                    without_mesh.insert(number);
+                }
             }
             if sweep.section.times == 0 {
                 continue;
             }
             for (number, time) in timed_cases(rows(Of::Times)?).with_context(|| block.file(Of::Times))? {
                 if let Some((machine, seconds)) = time {
-                    sums.add_time(block.pair, number, &machine, Some(seconds));
+                    // To find nothing takes another time than a mesh.
+                    let seconds = Some(seconds).filter(|_| !without_mesh.contains(&number));
+                    sums.add_time(block.pair, number, &machine, seconds);
                 }
             }
         }

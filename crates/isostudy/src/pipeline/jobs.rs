@@ -3,6 +3,9 @@
 //! A job is a stage of the pipeline, by the stage's own name, or all that follows from the others. What does a study in one run and what
 //! does it job by job are the same functions: a job looks up every stage but its own.
 
+mod costs;
+mod files;
+
 use super::cases::{Block, Of, blocks};
 use super::meshes::{TICKS_A_MESH, purpose_name};
 use super::stimuli::MadeWith;
@@ -10,35 +13,25 @@ use super::tables::study_inputs;
 use super::timings::machine_stage;
 use super::viewer::has_library;
 use super::{Making, Pipeline, PlanLength};
-use crate::memory::{Needs, OfVolume};
-use crate::prepare::{self, Wanted};
+use crate::prepare::Wanted;
 use crate::recipe::{self, Recipe, recipe};
+use crate::source_digests;
 use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
 use crate::work_time::Trials;
-use crate::{fields, source_digests};
 use anyhow::{Context, Result, bail};
+use files::NamedFiles;
 use isostudy_design::config::StillSection;
 use isostudy_design::forms::Stimulus;
 use isostudy_design::record::Purpose;
 use isostudy_design::wording::did_you_mean;
 use isostudy_design::{Configuration, ConfigurationId, Study};
-use isostudy_extract::Execution;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::PoisonError;
 
 /// The job that makes tables, figures and pages of all the others.
 pub(crate) const REPORT: &str = "report";
-/// What a process takes beside the grid, the volume and the mesh.
-const PROCESS_BYTES: f64 = 96.0 * 1024.0 * 1024.0;
-/// How often a mesh is in memory while it is measured: itself, trees over it, and the points of its surface.
-const MESHES_HELD: f64 = 10.0;
-/// Seconds for a pixel of an animation, drawn at the usual supersampling and compressed.
-const PIXEL_S: f64 = 1.5e-7;
-/// Seconds for tables and pages, for each configuration.
-const PAGES_S: f64 = 0.25;
-const PAGES_BYTES: f64 = 4.0 * 1024.0 * 1024.0;
 
 /// A part of a study that is done by itself.
 #[derive(Debug, Clone)]
@@ -377,33 +370,6 @@ impl<'a> Pipeline<'a> {
         work(self, stamps)
     }
 
-    /// The folder's files that a job leaves.
-    fn outputs(&self, job: &Job<'_>) -> Vec<String> {
-        let (codes, _) = self.study.code_names();
-        match job {
-            Job::Budget(purpose, of) => vec![format!("budgets/{}/{}.json", purpose_name(*purpose), of.id)],
-            Job::Mesh(purpose, of) => {
-                let path = format!("meshes/{}/{}", purpose_name(*purpose), of.id);
-                let endings: &[&str] =
-                    if *purpose == Purpose::Indexed { &["json"] } else { &["ply", "json"] };
-                endings.iter().map(|ending| format!("{path}.{ending}")).collect()
-            }
-            Job::Turntable(of) => {
-                let place = self.study.configurations.iter().position(|other| other == *of);
-                let code = place.map_or("", |place| &codes[place]);
-                vec![format!("stimuli/turntables/{code}.gif"), MadeWith::file(&of.id)]
-            }
-            Job::Pair(of) => vec![format!("stimuli/pairs/{}.gif", of.code)],
-            Job::Still(of) => ["png", "svg"].map(|ending| format!("figures/{}.{ending}", of.id)).to_vec(),
-            Job::ViewerMesh(of, factor) => vec![format!("viewer/{}_{factor}.json", of.id)],
-            Job::Timings | Job::OnMachine(_) => {
-                ["run.json", "samples.csv"].map(|name| format!("{}/{name}", job.id(self.study))).to_vec()
-            }
-            Job::Cases(of, block) => vec![block.file(*of)],
-            Job::Chunks(_) | Job::Stored(_) | Job::Report => Vec::new(),
-        }
-    }
-
     /// What a job depends on beside those that it needs. A stage may depend on what they find; this is known before.
     fn own_inputs(&self, job: &Job<'_>) -> Result<Inputs> {
         let file = &self.study.file;
@@ -466,188 +432,11 @@ impl<'a> Pipeline<'a> {
         };
         Ok(inputs.text("id", &job.id(self.study)))
     }
-
-    /// Seconds and bytes that a job is expected to take.
-    fn cost(&self, job: &Job<'a>, trials: &mut Trials<'a>) -> Result<(Option<f64>, Option<u64>)> {
-        let file = &self.study.file;
-        let pixels = f64::from(file.turntable.width) * f64::from(file.turntable.height);
-        let drawn = pixels * f64::from(file.turntable.frames) * PIXEL_S;
-        let light = |seconds: f64, bytes: f64| (Some(seconds), Some((PROCESS_BYTES + bytes) as u64));
-        // Frames are held as they are drawn, and once more as they are compressed.
-        let frames = 3.0 * pixels * f64::from(file.turntable.frames);
-        let scale = f64::from(file.stimuli.pair_scale);
-        Ok(match job {
-            Job::Budget(purpose, of) => {
-                let spacing = Wanted::For(*purpose).spacing(self.study.object(of));
-                // About as many steps as bisection takes.
-                self.mesh_cost(of, *purpose, spacing, [8.0, 0.0], trials)?
-            }
-            Job::Mesh(purpose, of) => {
-                let spacing = Wanted::For(*purpose).spacing(self.study.object(of));
-                self.mesh_cost(of, *purpose, spacing, [1.0, 1.0], trials)?
-            }
-            Job::ViewerMesh(of, factor) => {
-                let spacing = factor * Wanted::For(Purpose::Stimulus).spacing(self.study.object(of));
-                self.mesh_cost(of, Purpose::Stimulus, spacing, [1.0, 1.0], trials)?
-            }
-            Job::Still(of) => {
-                let configuration = self.study.configurations.iter().find(|c| c.id == of.configuration);
-                let configuration = configuration.context("checked when the study was read")?;
-                self.mesh_cost(configuration, Purpose::Stimulus, of.spacing, [1.0, 1.0], trials)?
-            }
-            Job::Turntable(_) => light(drawn, frames),
-            Job::Pair(_) => light(drawn, frames * (1.0 + 2.0 * scale * scale)),
-            Job::Timings | Job::OnMachine(_) => {
-                let section = &file.benchmark;
-                let rounds = match job {
-                    // With the A/A block, peak memory and what is allocated.
-                    Job::OnMachine(_) => section.iterations + section.aa_iterations + 2,
-                    _ => section.short_iterations + u32::from(section.memory),
-                };
-                let times = f64::from(section.warmup + rounds);
-                self.times_cost(&|_| true, times, trials)?
-            }
-            Job::Chunks(object) | Job::Stored(object) => {
-                // Chunks share less than a whole does; edits come after them.
-                let times = 3.0 * f64::from(file.benchmark.short_iterations);
-                self.times_cost(&|of| of.object == *object, times, trials)?
-            }
-            Job::Cases(of, block) => {
-                let times =
-                    self.sweep.as_ref().map_or(0, |sweep| sweep.section.times + file.benchmark.warmup);
-                let often = match of {
-                    Of::Meshes => [1.0, 1.0],
-                    // Peak memory takes one more.
-                    Of::Times => [f64::from(times + 1), 0.0],
-                };
-                self.cases_cost(block, often, trials)?
-            }
-            Job::Report => {
-                let configurations = self.study.configurations.len() as f64;
-                light(PAGES_S * configurations, PAGES_BYTES * configurations)
-            }
-        })
-    }
-
-    /// Of a mesh that is extracted and measured so often.
-    fn mesh_cost(
-        &self,
-        of: &'a Configuration,
-        purpose: Purpose,
-        spacing: f64,
-        [extracted, measured]: [f64; 2],
-        trials: &mut Trials<'a>,
-    ) -> Result<(Option<f64>, Option<u64>)> {
-        let Some(cost) = trials.cost(of, purpose, spacing)? else { return Ok((None, None)) };
-        let Recipe::Extractor(method) = recipe(self.study, of.id.method, purpose)? else {
-            return Ok((None, None));
-        };
-        let volume: Option<OfVolume> = fields::volume(self.study, of.object)?;
-        let grid = prepare::grid(self.study.object(of), spacing);
-        let needs = Needs::of(volume).with(&method, &grid, &Execution { threads: 1 })?.total() as f64;
-        let bytes = PROCESS_BYTES + needs + MESHES_HELD * cost.mesh_bytes;
-        Ok((Some(extracted * cost.extracting_s + measured * cost.measuring_s), Some(bytes as u64)))
-    }
-
-    /// Of the cases of a block, as if their settings were the configuration's own.
-    fn cases_cost(
-        &self,
-        block: &Block<'a>,
-        often: [f64; 2],
-        trials: &mut Trials<'a>,
-    ) -> Result<(Option<f64>, Option<u64>)> {
-        let (mut seconds, mut bytes) = (0.0, 0);
-        let mut cells = self.cells_of(block)?;
-        cells.sort_unstable();
-        for same in cells.chunk_by(|a, b| a == b) {
-            let wanted = Wanted::Cells(same[0], Purpose::Benchmark);
-            let spacing = wanted.spacing(self.study.object(block.configuration));
-            let of = self.mesh_cost(block.configuration, Purpose::Benchmark, spacing, often, trials)?;
-            let (Some(s), Some(b)) = of else { return Ok((None, None)) };
-            seconds += same.len() as f64 * s;
-            bytes = bytes.max(b);
-        }
-        Ok((Some(seconds), Some(bytes)))
-    }
-
-    /// Of some configurations that are extracted so often; `None` where one of them cannot be tried.
-    fn times_cost(
-        &self,
-        which: &dyn Fn(&Configuration) -> bool,
-        times: f64,
-        trials: &mut Trials<'a>,
-    ) -> Result<(Option<f64>, Option<u64>)> {
-        let (mut seconds, mut bytes) = (0.0, PROCESS_BYTES as u64);
-        for of in self.study.configurations.iter().filter(|of| which(of)) {
-            let spacing = Wanted::For(Purpose::Benchmark).spacing(self.study.object(of));
-            let (s, b) = self.mesh_cost(of, Purpose::Benchmark, spacing, [times, 0.0], trials)?;
-            let (Some(s), Some(b)) = (s, b) else { return Ok((None, None)) };
-            seconds += s;
-            bytes = bytes.max(b);
-        }
-        Ok((Some(seconds), Some(bytes)))
-    }
 }
 
 /// The places of the jobs that one needs, which are before it.
 fn needed(place: usize, jobs: &[Job<'_>], may_fail: &[&Configuration]) -> Vec<usize> {
     (0..place).filter(|&other| jobs[place].needs(&jobs[other], may_fail)).collect()
-}
-
-/// The files that a study names, each read once.
-struct NamedFiles {
-    /// By the object's place.
-    of_objects: Vec<Vec<String>>,
-    /// By the method's place.
-    of_methods: Vec<Vec<String>>,
-}
-
-impl NamedFiles {
-    fn of(study: &Study) -> Result<Self> {
-        let resolved = |files: Vec<(String, String)>| -> Vec<String> {
-            // What a header names is listed with it.
-            let named = files.into_iter().filter(|(name, _)| !name.starts_with("samples of "));
-            named.map(|(name, _)| study.resolve(&name).display().to_string()).collect()
-        };
-        let objects = 0..study.file.objects.len();
-        Ok(Self {
-            of_objects: objects
-                .map(|object| Ok(resolved(fields::files(study, object)?)))
-                .collect::<Result<_>>()?,
-            of_methods: study
-                .methods
-                .iter()
-                .map(|method| Ok(resolved(recipe::files(study, method.id)?)))
-                .collect::<Result<_>>()?,
-        })
-    }
-
-    fn of_job(&self, study: &Study, job: &Job<'_>) -> Vec<String> {
-        let reads = |of: &Configuration| match job {
-            Job::Budget(_, own) | Job::Mesh(_, own) | Job::Turntable(own) | Job::ViewerMesh(own, _) => {
-                of == *own
-            }
-            Job::Cases(_, block) => of == block.configuration,
-            Job::Still(still) => of.id == still.configuration,
-            Job::Pair(_) => false,
-            Job::Chunks(object) | Job::Stored(object) => of.object == *object,
-            Job::Timings | Job::OnMachine(_) | Job::Report => true,
-        };
-        let mut files = vec![study.path.display().to_string()];
-        if let (Job::Report, Some(responses)) = (job, &study.responses) {
-            files.push(responses.display().to_string());
-        }
-        for of in study.configurations.iter().filter(|of| reads(of)) {
-            let method = study.methods.iter().position(|method| method.id == of.id.method);
-            let of_method = method.map_or(&[][..], |place| &self.of_methods[place]);
-            for file in self.of_objects[of.object].iter().chain(of_method) {
-                if !files.contains(file) {
-                    files.push(file.clone());
-                }
-            }
-        }
-        files
-    }
 }
 
 /// Where a job is among all.

@@ -158,7 +158,7 @@ fn a_small_study_covers_and_keeps_its_level() {
 }
 
 #[test]
-#[ignore = "minutes: prints a table"]
+#[ignore = "minutes: run by make test-long; prints a table"]
 fn thirty_six_items_measured() {
     println!(
         "spread | people differ | design | answers | alone: error, covered, none rejected, studies | together: the same"

@@ -307,7 +307,11 @@ struct Defaults {
     arguments: Arguments,
 }
 
-fn default_assumptions(study: &Study) -> Result<Assumptions> {
+/// What is assumed where nothing but the study is given.
+///
+/// # Errors
+/// If the study has no forms, or its answers cannot be read.
+pub(in crate::commands) fn default_assumptions(study: &Study) -> Result<Assumptions> {
     let words = [Path::new("power").as_os_str(), study.path.as_os_str()];
     let planned = forms_section(study)?.participants as usize;
     assumptions(&Defaults::parse_from(words).arguments, study, planned)
@@ -317,22 +321,22 @@ fn simulation(study: &Study) -> Simulation<'_> {
     Simulation { command: "design power", study: Some(study) }
 }
 
-/// What is assumed where nothing but the study is given, for digests.
-///
-/// # Errors
-/// If the study has no forms, or its answers cannot be read.
-pub(in crate::commands) fn assumed(study: &Study) -> Result<impl Serialize + use<>> {
-    Ok(Simulated::from(default_assumptions(study)?))
+/// Assumptions as files of parts have them, for digests.
+pub(in crate::commands) fn assumed(assumptions: &Assumptions) -> impl Serialize + use<> {
+    Simulated::from(assumptions.clone())
 }
 
-/// The file that `--part` writes where nothing else is given.
+/// The file that `--part` writes.
 ///
 /// # Errors
 /// As [`run`].
-pub(in crate::commands) fn part_file(study: &Study, part: Part) -> Result<Vec<u8>> {
-    let assumptions = default_assumptions(study)?;
-    let series = series(study, &assumptions, part)?;
-    simulation(study).file(&Simulated::from(assumptions), part, &series)
+pub(in crate::commands) fn part_file(
+    study: &Study,
+    assumptions: &Assumptions,
+    part: Part,
+) -> Result<Vec<u8>> {
+    let series = series(study, assumptions, part)?;
+    simulation(study).file(&assumed(assumptions), part, &series)
 }
 
 /// The files that `--merge` writes of all parts.
