@@ -30,10 +30,9 @@ fn verdict(of: &Machines) -> Finding {
     let told = same + contradicted;
     let pairs = |count: usize| counted(count, "pair");
     let left = format!(
-        "Of {} in all, one machine alone distinguishes {}, and no machine {}.",
+        "Of {} in all, {one} {} distinguished by one machine alone, and {none} by none.",
         pairs(of.pairs.len()),
-        pairs(one),
-        pairs(none)
+        if one == 1 { "is" } else { "are" },
     );
     if told == 0 {
         let text =
@@ -74,8 +73,11 @@ fn remarks(of: &Machines, missing: &[String]) -> Vec<String> {
     let busy: Vec<String> =
         of.machines.iter().filter(|says| says.is_busy()).map(|says| says.name.clone()).collect();
     if !busy.is_empty() {
-        let had = if busy.len() == 1 { "was" } else { "were" };
-        remarks.push(format!("{} {had} not quiet while it measured. Its times are worth less.", list(&busy)));
+        let was = if busy.len() == 1 { "was" } else { "were" };
+        remarks.push(format!(
+            "{} {was} not quiet during the run. Times of such a run are worth less, and so are their verdicts.",
+            list(&busy)
+        ));
     }
     if !missing.is_empty() {
         let has = if missing.len() == 1 { "has" } else { "have" };

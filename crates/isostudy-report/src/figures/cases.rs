@@ -13,40 +13,42 @@ use isostudy_inference::cases::{CaseQuantity, SweepFound, SweepLine};
 
 const ROW: f64 = 340.0;
 
+/// A figure: what it shows, in words, and its unit where it has one.
+#[derive(Clone, Copy)]
+struct Drawn {
+    name: &'static str,
+    quantity: CaseQuantity,
+    measure: &'static str,
+    unit: &'static str,
+}
+
+const DRAWN: [Drawn; 3] = [
+    Drawn {
+        name: "sweep_distance",
+        quantity: CaseQuantity::Distance,
+        measure: "mean distance to the isosurface",
+        unit: "",
+    },
+    Drawn { name: "sweep_triangles", quantity: CaseQuantity::Triangles, measure: "triangles", unit: "" },
+    Drawn { name: "sweep_seconds", quantity: CaseQuantity::Seconds, measure: "median time", unit: ", s" },
+];
+
 /// The figures of a sweep's cases; those with nothing to show are left out.
 ///
 /// # Errors
 /// If drawing fails, which is not to be expected.
 pub fn case_figures(study: &Study, found: &SweepFound) -> Result<Vec<Figure>, FigureError> {
-    let drafts = |sheet: Sheet| {
-        [
-            of(
-                study,
-                found,
-                sheet,
-                "sweep_distance",
-                CaseQuantity::Distance,
-                "mean distance to the isosurface",
-            ),
-            of(study, found, sheet, "sweep_triangles", CaseQuantity::Triangles, "triangles"),
-            of(study, found, sheet, "sweep_seconds", CaseQuantity::Seconds, "median time, s"),
-        ]
-    };
-    let both = drafts(Sheet::Wide).into_iter().flatten().zip(drafts(Sheet::Narrow).into_iter().flatten());
+    let drafts = |sheet: Sheet| DRAWN.iter().map(move |drawn| draft(study, found, sheet, drawn));
+    let both = drafts(Sheet::Wide).flatten().zip(drafts(Sheet::Narrow).flatten());
     both.map(|(wide, narrow)| wide.finish_with(narrow)).collect()
 }
 
 /// An object, and of times a machine.
 type Shown<'a> = (&'a str, Option<&'a String>);
 
-fn of(
-    study: &Study,
-    found: &SweepFound,
-    sheet: Sheet,
-    name: &'static str,
-    quantity: CaseQuantity,
-    y: &str,
-) -> Option<Unfinished> {
+fn draft(study: &Study, found: &SweepFound, sheet: Sheet, of: &Drawn) -> Option<Unfinished> {
+    let Drawn { name, quantity, measure, unit } = *of;
+    let y = format!("{measure}{unit}");
     let lines: Vec<&SweepLine> =
         found.lines.iter().filter(|line| line.quantity == quantity && line.points.len() > 1).collect();
     let mut panels: Vec<Shown<'_>> = Vec::new();
@@ -61,7 +63,7 @@ fn of(
     let mark =
         |method: &MethodId| (Swatch::Mark(style::mark(study, *method)), study.method(*method).label.clone());
     let legend: Vec<(Swatch, String)> = methods.iter().filter(drawn).map(mark).collect();
-    let panels: Vec<Scatter> = panels.into_iter().map(|shown| panel(study, &lines, shown, y)).collect();
+    let panels: Vec<Scatter> = panels.into_iter().map(|shown| panel(study, &lines, shown, &y)).collect();
     let rows: Vec<&[Scatter]> = panels.chunks(sheet.columns(3)).collect();
     let (mut canvas, top) = canvas_with_legend(sheet, &legend, ROW * rows.len() as f64);
     for (row, panels) in (0_u32..).zip(&rows) {
@@ -74,7 +76,7 @@ fn of(
     }
     let caption = format!(
         "{} against the cells per axis. Each mark is the geometric mean over all settings at a resolution. Both axes are logarithmic.",
-        crate::words::capital(y)
+        crate::words::capital(measure)
     );
     (!rows.is_empty()).then_some(Unfinished { name, caption, canvas })
 }

@@ -32,9 +32,9 @@ fn machines(of: &Machines) -> Table {
         })
         .column("os", "System", |says| Cell::text(&says.run.machine.os))
         .column("rounds", "Rounds", |says| Cell::count(says.run.iterations.into()))
-        .quantity("floor_low_percent", "Noise floor from", "%", |says| floor(says, |range| range.0))
+        .quantity("floor_low_percent", "Noise floor, {}, from", "%", |says| floor(says, |range| range.0))
         .quantity("floor_high_percent", "to", "%", |says| floor(says, |range| range.1))
-        .quantity("others_percent", "Others had up to", "%", |says| {
+        .quantity("others_percent", "Others had up to, {}", "%", |says| {
             Cell::number(says.others().map(|share| 100.0 * share), 0)
         })
         .into_table("machines", "Machines that measured the study")
@@ -77,7 +77,9 @@ fn fastest(of: &Machines) -> Table {
     columns
         .column("on_all", "On all machines", |found| names(&found.on_all))
         .into_table("machine_fastest", "Methods that may take the least time, by machine")
-        .with_note("No other method is told to be faster on that machine, beyond its noise floor. The least median comes first.")
+        .with_note(
+            "No other method is faster beyond that machine's noise floor. The least median comes first.",
+        )
 }
 
 fn agreement(of: &Machines) -> Table {
