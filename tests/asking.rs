@@ -291,7 +291,7 @@ fn a_bundle_tells_nothing_of_the_key() {
     fixture.succeed("bundle", &[]);
     let bundle = fixture.out().join("bundle");
     let made = files(&bundle);
-    assert_eq!(made.len(), 12 + 2 * 27 + 2, "{:?}", made.keys());
+    assert_eq!(made.len(), 13 + 2 * 27 + 2, "{:?}", made.keys());
     let key = std::fs::read_to_string(fixture.out().join("key/stimuli.csv")).unwrap();
     let shown: BTreeMap<&str, &str> =
         key.lines().filter_map(|line| line.strip_prefix("stimuli/pairs/")?.split_once(',')).collect();

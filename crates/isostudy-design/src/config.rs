@@ -16,7 +16,9 @@ mod viewer;
 
 pub use crate::method::{BudgetSection, Quantity, StimulusLook};
 pub use about::{AboutKind, AboutSection, AboutTime};
-pub use analysis::{AnalysisSection, Declaration, Exclusion, FamilyRule};
+pub use analysis::{
+    AnalysisSection, Declaration, Exclusion, FamilyRule, StopWhen, StoppingBoundary, StoppingSection,
+};
 pub use field::{FieldSection, Inside, MeshSourceSection, PointKernel, PointNormals};
 pub use forms::{FormsSection, OrderRule, Panel, ShownNames, SideRule, TrainingSection};
 pub(crate) use forms::{is_english_alone, is_false, languages};

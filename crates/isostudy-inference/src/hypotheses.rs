@@ -4,12 +4,12 @@ use crate::ballots::BallotGroup;
 use crate::omnibus::{self, Omnibus};
 use isostudy_design::Level;
 use isostudy_design::Study;
-use isostudy_design::config::AnalysisSection;
+use isostudy_design::config::{AnalysisSection, StoppingBoundary, StoppingSection};
 use isostudy_design::contrast::{Contrast, Over, PRIMARY, contrasts, families};
 use isostudy_statistics::bootstrap::Resampling;
 use isostudy_statistics::interval::Interval;
 use isostudy_statistics::sign_test;
-use isostudy_statistics::{DeclaredBallot, MARGIN, ScoreTest, benjamini_hochberg, holm};
+use isostudy_statistics::{Boundary, DeclaredBallot, Look, MARGIN, ScoreTest, benjamini_hochberg, holm};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -171,7 +171,7 @@ pub struct Hypothesis {
     pub target: Target,
     /// The test of it.
     pub test: ScoreTest,
-    /// The sign-flip p, adjusted within the family.
+    /// The sign-flip p, at a look its repeated p, adjusted within the family.
     pub adjusted: f64,
     /// The same, adjusted over every test but those of single questions; `None` for those.
     pub adjusted_over_all: Option<f64>,
@@ -192,6 +192,8 @@ pub struct Hypothesis {
     on_one_side: bool,
     /// What decides its conclusion.
     pub rules: Rules,
+    /// The look at which it was tested, where the study may stop by it.
+    pub look: Option<Look>,
 }
 
 impl Hypothesis {
@@ -212,7 +214,13 @@ impl Hypothesis {
             by_side: false,
             on_one_side: false,
             rules,
+            look: None,
         }
+    }
+
+    /// p of a test of it, before correction within its family: at a look the repeated p.
+    pub fn p_at_look(&self, p: f64) -> f64 {
+        self.look.as_ref().map_or(p, |look| look.repeated_p(p))
     }
 
     /// Says that people were shown to favour a side: what is equal within the margin may then be hidden by it. If no pair was shown
@@ -321,6 +329,8 @@ pub fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis
     let rules = Rules::of(&study.file.analysis);
     let contrasts = contrasts(study);
     let families = families(&contrasts, &study.file.analysis);
+    let people: BTreeSet<usize> = ballots.iter().map(DeclaredBallot::participant).collect();
+    let look = study.file.analysis.stopping.as_ref().map(|rule| look(rule, people.len()));
     let of_contrast = |contrast: &Contrast| {
         let target = Target::Contrast { levels: contrast.levels, over: contrast.over };
         Hypothesis::new(contrast.name.clone(), &contrast.scope, target, test(study, contrast, ballots), rules)
@@ -341,6 +351,9 @@ pub fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis
             .filter(|(i, _)| family.members.contains(i))
             .map(|(_, hypothesis)| hypothesis)
             .collect();
+        if family.name == PRIMARY {
+            members.iter_mut().for_each(|of| of.look.clone_from(&look));
+        }
         adjust(&mut members, Adjustment::Holm);
     }
     let first = |h: &Hypothesis| h.family != PRIMARY;
@@ -348,6 +361,15 @@ pub fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis
     adjust_over_all(&mut all);
     mark_by_object(study, ballots, &mut all);
     all
+}
+
+/// The look of a stopping rule that so many people have reached.
+pub fn look(rule: &StoppingSection, people: usize) -> Look {
+    let boundary = match rule.boundary {
+        StoppingBoundary::OBrienFleming => Boundary::OBrienFleming,
+        StoppingBoundary::Pocock => Boundary::Pocock,
+    };
+    Look::of(boundary, &rule.looks, people)
 }
 
 /// Marks what compares two levels on all objects where their preference was shown to depend on the object.
@@ -545,9 +567,10 @@ impl<'a> Pair<'a> {
 /// Adjusts the p of one family; what nobody answered is not among its tests.
 fn adjust(family: &mut [&mut Hypothesis], adjustment: Adjustment) {
     let mut tested: Vec<&mut &mut Hypothesis> = family.iter_mut().filter(|h| h.is_tested()).collect();
-    let different = adjustment.of(&tested.iter().map(|h| h.test.sign_flip.p()).collect::<Vec<_>>());
+    let different =
+        adjustment.of(&tested.iter().map(|h| h.p_at_look(h.test.sign_flip.p())).collect::<Vec<_>>());
     let equal: Vec<Option<f64>> =
-        tested.iter().map(|h| h.test.equivalence(h.rules.margin).map(|test| test.p)).collect();
+        tested.iter().map(|h| h.test.equivalence(h.rules.margin).map(|test| h.p_at_look(test.p))).collect();
     // One participant alone has no test of equivalence, and then adds none to the family.
     let mut adjusted_equal = adjustment.of(&equal.iter().flatten().copied().collect::<Vec<_>>()).into_iter();
     let size = tested.len();
@@ -560,7 +583,8 @@ fn adjust(family: &mut [&mut Hypothesis], adjustment: Adjustment) {
 /// Holm over every test, whatever its family.
 fn adjust_over_all(all: &mut [Hypothesis]) {
     let tested: Vec<usize> = (0..all.len()).filter(|&i| all[i].is_tested()).collect();
-    let adjusted = holm(&tested.iter().map(|&i| all[i].test.sign_flip.p()).collect::<Vec<_>>());
+    let adjusted =
+        holm(&tested.iter().map(|&i| all[i].p_at_look(all[i].test.sign_flip.p())).collect::<Vec<_>>());
     tested.into_iter().zip(adjusted).for_each(|(i, p)| all[i].adjusted_over_all = Some(p));
 }
 

@@ -31,6 +31,7 @@ impl WithoutOne {
                 let mut p = h.test.leave_one_out();
                 p.resize(h.test.groups.len(), 1.0);
                 p.push(h.test.sign_flip.p());
+                p.iter_mut().for_each(|p| *p = h.p_at_look(*p));
                 p
             })
             .collect();

@@ -25,6 +25,7 @@ const OTHERS: &[(&str, &str, &str)] = &[
     ("isostudy-report/src/figures/edge_groups.rs", "Panel {", "whiskers of a box"),
     ("isostudy-report/src/figures/fronts.rs", "Axes::TrianglesError", "room beside an axis"),
     ("isostudy-report/src/figures/sweep.rs", "const ASIDE", "a distance of marks"),
+    ("isostudy-statistics/src/adaptive/known.rs", "const SPREADS", "widths of priors that are compared"),
     ("isostudy-statistics/src/heterogeneity.rs", "const CLOSE", "a step of an iteration"),
     ("isostudy-statistics/src/heterogeneity.rs", "if part <", "a step of an iteration"),
     ("isostudy-statistics/src/screening.rs", "Flag::Outlying", "rules of screening are fixed and printed"),

@@ -47,7 +47,10 @@
 
   const loading = window.isostudyLoading(study);
   const about = window.isostudyAbout({ text, make, say, heading, show });
-  const rights = window.isostudyRights({ study, text, make, say, heading, show, given });
+  // A tablet that people share, see docs/questionnaire.md.
+  const kiosk = study.server && address.has('kiosk') ? window.isostudyKiosk({ text, make, heading, post, key: KEY, leave: restart }) : null;
+  const nextParticipant = () => (kiosk ? [kiosk.next()] : []);
+  const rights = window.isostudyRights({ study, text, make, say, heading, show, given, beside: nextParticipant });
   const trial = window.isostudyTrial({ study, text, loading, make, say, heading, show, touch: TOUCH });
 
   // ---- what survives a reload -------------------------------------------------------------------------------------
@@ -232,9 +235,19 @@
   // Whether somebody has taken part before in this page, so that the number in its address is not of the next one.
   let follows = false;
 
+  /** Whoever was here has left: the next one begins at the start, in the study's language. */
+  function restart() {
+    if (session) kiosk.keep(session);
+    gone();
+    say('');
+    texts.begin(given('lang'), ...navigator.languages);
+    consent();
+  }
+
   /** `lost` is a session of which the server knows nothing. */
   function consent(lost = null) {
     place = null;
+    kiosk?.start();
     $('progress-row').hidden = true;
     const begin = make('button', { type: 'button', className: 'main' }, text('begin'));
     const parts = [heading(text('before')), ...languages(lost), make('p', { className: 'text' }, text('consent')),
@@ -376,7 +389,7 @@
         const { token } = session;
         if (!await send()) return;
         gone();
-        show(heading(text('thank_you')), make('p', { className: 'text' }, text('stopped')), ...rights.receipt(token), ...rights.completion(study.completion_withdrawn));
+        show(heading(text('thank_you')), make('p', { className: 'text' }, text('stopped')), ...rights.receipt(token), ...rights.completion(study.completion_withdrawn), ...nextParticipant());
       } else {
         show(heading(text('thank_you')), make('p', { className: 'text' }, text('stopped')), make('div', { className: 'row' }, ...downloads(session)));
       }
@@ -487,7 +500,7 @@
       if (!await send()) return;
       const reply = await insist('api/finish', { token: session.token });
       if (!reply) return;
-      show(heading(text('thank_you')), make('p', { className: 'text' }, text('all_saved')), ...rights.completion(reply.completion), ...rights.receipt(session.token));
+      show(heading(text('thank_you')), make('p', { className: 'text' }, text('all_saved')), ...rights.completion(reply.completion), ...rights.receipt(session.token), ...nextParticipant());
       say('');
     } catch (error) {
       if (!error.conflict) throw error;

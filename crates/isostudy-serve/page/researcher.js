@@ -50,6 +50,25 @@
     $('minutes').setAttribute('aria-label', `Answers in each of the last 60 minutes: ${most} at most, ${counts.at(-1)} in the last`);
   }
 
+  function expected(stand) {
+    if (stand.finished >= stand.planned) return 'all have finished';
+    if (stand.expected_end_ms === null) return 'not known yet';
+    return new Date(stand.expected_end_ms).toLocaleString();
+  }
+
+  /** What the stopping rule says that the study declared. */
+  function rule({ looks, look, says }) {
+    const all = `The study declared ${looks.length === 1 ? 'a look' : `${looks.length} looks`} at ${looks.join(', ')} participants who finished.`;
+    const at = `Look ${look} says:`;
+    const words = {
+      wait: 'The first look has not been reached.',
+      'go-on': `${at} go on. The contrasts that decide do not differ yet at the adjusted level.`,
+      stop: `${at} stop. The contrasts that decide differ at the adjusted level.`,
+      end: `${at} the study ends here. The contrasts that decide do not differ at the adjusted level.`,
+    };
+    return `${all} ${words[says] ?? `Look ${look} could not be judged: ${says.failed}`}`;
+  }
+
   async function show() {
     clearTimeout(timer);
     try {
@@ -57,11 +76,16 @@
       sessionStorage.setItem('isostudy:token', token);
       $('door').hidden = true;
       $('stand').hidden = false;
+      document.title = `${stand.title} \u2013 how the study stands`;
+      $('title').textContent = stand.title;
       const live = stand.forms.map(([, started]) => started);
       const numbers = [
-        ['Participants who began', stand.started], ['who finished', stand.finished], ['answering now', stand.answering],
+        ['Participants who finished', `${stand.finished} of ${stand.planned} planned`], ['who began', stand.started], ['who have begun and not finished', stand.answering],
+        ['who answered in the last two minutes', stand.recent],
         ['Answers', stand.answers], ['in the last minute', stand.per_minute[59]],
-        ['Participants a form', `${Math.min(...live)} to ${Math.max(...live)}`],
+        ['Participants per form', `${Math.min(...live)} to ${Math.max(...live)}${stand.per_form === null ? '' : `, at most ${stand.per_form}`}`],
+        ['Median time from beginning to end', stand.median_ms === null ? 'not known yet' : `${(stand.median_ms / 60000).toFixed(1)} min`],
+        ['Expected end, at the pace of the last 24 hours', expected(stand)],
         ['People who withdrew', stand.departures.withdrawn], ['who were screened out', stand.departures.screened_out],
         ['who came when there were enough like them', stand.departures.full],
       ];
@@ -72,7 +96,13 @@
         return [term, text];
       }));
       bars(stand.per_minute);
+      $('stopping').hidden = stand.stopping === null;
+      $('stopping').textContent = stand.stopping === null ? '' : rule(stand.stopping);
       table('forms', ['Form', 'Participants', 'Finished'], stand.forms);
+      $('quota').hidden = stand.options.length === 0;
+      table('options', ['Question', 'Answer', 'People', 'At most'], stand.options.map((option, i) => [...stand.words[i], option.people, option.most]));
+      $('leaving').hidden = stand.left.length === 0;
+      table('left', ['Answers that they gave', 'People'], stand.left);
       table('questions', ['Question', 'Answers', 'Median, s'], stand.questions.map(([question, answers, median]) => [question, answers, (median / 1000).toFixed(1)]));
       $('status').textContent = `As of ${new Date().toLocaleTimeString()}`;
       timer = setTimeout(show, 5000);

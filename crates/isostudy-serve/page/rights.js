@@ -1,8 +1,9 @@
 // What participants may do besides answering: decline, stop, and have their answers deleted.
 'use strict';
 
-/** `page` has what the questionnaire shares: study, text, make, say, heading, show and given, a name's value in the address. */
-window.isostudyRights = ({ study, text, make, say, heading, show, given }) => {
+/** `page` has what the questionnaire shares: study, text, make, say, heading, show, given, a name's value in the address,
+ * and beside, what else a last view offers. */
+window.isostudyRights = ({ study, text, make, say, heading, show, given, beside }) => {
   const line = (words) => make('p', { className: 'text' }, words);
   function button(words, act, className = '') {
     const made = make('button', { type: 'button', className }, words);
@@ -18,9 +19,9 @@ window.isostudyRights = ({ study, text, make, say, heading, show, given }) => {
     return [make('div', { className: 'row' }, make('a', { href, className: 'button main', rel: 'noreferrer' }, text('finish')))];
   }
 
-  /** The last view: nothing can be done in it but to leave. */
+  /** The last view of a participant. */
   function over(key, said) {
-    show(heading(text('thank_you')), line(text(key)), ...completion(said));
+    show(heading(text('thank_you')), line(text(key)), ...completion(said), ...beside());
     say('');
   }
 

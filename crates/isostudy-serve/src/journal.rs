@@ -30,7 +30,7 @@ pub use departures::Departures;
 pub(crate) use files::kept_on;
 pub use files::{Kept, kept};
 pub use seal::Held;
-pub use summary::Summary;
+pub use summary::{OptionCount, Summary};
 #[cfg(test)]
 pub(crate) use thread::{Desk, desk};
 pub use thread::{Handle, Keeper, Unsaved, start};

@@ -32,4 +32,4 @@ pub mod shown;
 
 pub use completions::Completions;
 pub use journal::random_hex;
-pub use server::{Limits, NoPublicUrl, PublicUrl, SHORTEST_TOKEN, ServeError, Settings, serve};
+pub use server::{Judge, Limits, NoPublicUrl, PublicUrl, Rule, SHORTEST_TOKEN, ServeError, Settings, serve};

@@ -6,7 +6,7 @@ use isostudy_design::forms::{AboutEntry, FormEntry, FormFile, Language};
 use serde::Serialize;
 
 /// The files of the page that are the same for all studies: name, MIME type, content.
-pub const FILES: [(&str, &str, &str); 9] = [
+pub const FILES: [(&str, &str, &str); 10] = [
     ("questionnaire.css", "text/css; charset=utf-8", include_str!("../page/questionnaire.css")),
     ("texts.js", "text/javascript; charset=utf-8", include_str!("../page/texts.js")),
     ("files.js", "text/javascript; charset=utf-8", include_str!("../page/files.js")),
@@ -14,6 +14,7 @@ pub const FILES: [(&str, &str, &str); 9] = [
     ("pair.js", "text/javascript; charset=utf-8", include_str!("../page/pair.js")),
     ("about.js", "text/javascript; charset=utf-8", include_str!("../page/about.js")),
     ("rights.js", "text/javascript; charset=utf-8", include_str!("../page/rights.js")),
+    ("kiosk.js", "text/javascript; charset=utf-8", include_str!("../page/kiosk.js")),
     ("trial.js", "text/javascript; charset=utf-8", include_str!("../page/trial.js")),
     ("questionnaire.js", "text/javascript; charset=utf-8", include_str!("../page/questionnaire.js")),
 ];

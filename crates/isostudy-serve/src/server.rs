@@ -8,12 +8,14 @@ mod host;
 mod limits;
 mod pace;
 mod stimuli;
+mod stopping;
 
 #[cfg(test)]
 mod simulation;
 
 pub use host::{NoPublicUrl, PublicUrl};
 pub use limits::Limits;
+pub use stopping::{Judge, Rule};
 
 use crate::completions::Completions;
 use crate::journal::{self, Handle, Held, Journal, JournalError, Loss};
@@ -66,6 +68,8 @@ pub struct Settings {
     pub panel: Panel,
     /// How many people the study takes.
     pub quotas: Quotas,
+    /// When a study that runs is looked at.
+    pub rule: Option<Rule>,
     /// Values of the questions that check attention.
     pub attention: Vec<(String, String)>,
     /// Where participants reach the server, if not at the address where it listens. There is a proxy on this machine then, which tells
@@ -113,6 +117,8 @@ struct Shared {
     /// Wrong researcher's tokens of an address.
     tries: Budgets,
     wrong_tokens: AtomicU64,
+    /// What the looks of a stopping rule said.
+    looked: stopping::Looked,
 }
 
 impl Shared {
@@ -139,6 +145,7 @@ impl Shared {
             sessions: (most > 0).then(|| Budgets::new(most, SESSIONS_BACK)),
             tries: Budgets::new(TRIES.0, TRIES.1),
             wrong_tokens: AtomicU64::new(0),
+            looked: stopping::Looked::default(),
         }
     }
 

@@ -50,6 +50,7 @@ mod scale;
 mod score;
 mod screening;
 mod separation;
+mod sequential;
 mod share;
 mod side;
 mod side_bound;
@@ -94,6 +95,7 @@ pub use scale::{Difference, NoOmnibus, Omnibus, Scale, Spread, fit_on_one_scale,
 pub use score::{FEWEST_RESAMPLED, ScoreGroup, ScoreTest};
 pub use screening::{Circumstances, Flag, Protocol, Screening, screening, screening_with};
 pub use separation::{Separation, separation};
+pub use sequential::{Boundary, Look};
 pub use share::{ClusteredShare, clustered_share};
 pub use side::{Side, SideDesign, side_design};
 pub use side_bound::{SideBound, side_bound};

@@ -33,5 +33,6 @@ mod object_of_study;
 mod parts;
 mod reading_rules;
 mod source_arguments;
+mod stopping;
 mod study_forms;
 mod study_run;

@@ -44,6 +44,65 @@ impl Exclusion {
     }
 }
 
+/// What a test must reach at a look, but for a constant factor; statistics defines it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StoppingBoundary {
+    /// Hard to cross early.
+    #[serde(rename = "obrien-fleming")]
+    OBrienFleming,
+    /// The same at each look.
+    Pocock,
+}
+
+/// Which primary contrasts decide that nobody more is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StopWhen {
+    /// All of them differ.
+    #[default]
+    All,
+    /// One of them differs.
+    Any,
+}
+
+/// When a study that runs is looked at, and when it then stops.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoppingSection {
+    /// Numbers of participants who have finished, ascending; the last is that of the plan.
+    pub looks: Vec<u32>,
+    /// What the tests must reach.
+    pub boundary: StoppingBoundary,
+    /// Which contrasts decide.
+    #[serde(default)]
+    pub when: StopWhen,
+}
+
+/// Looks at most: more of them would cost more than they can save.
+const MOST_LOOKS: usize = 10;
+
+impl StoppingSection {
+    /// Refuses looks that nobody could keep to.
+    fn check(&self, c: &Checker<'_>, primary: &[String]) -> Result<(), ConfigError> {
+        let looks = &self.looks;
+        let refuse = |limit: &str| c.refuse("analysis.stopping.looks", format!("{looks:?}"), limit);
+        if primary.is_empty() {
+            return refuse("needs analysis.primary: which differences decide?");
+        }
+        if !(1..=MOST_LOOKS).contains(&looks.len()) {
+            return refuse(&format!("must be 1 to {MOST_LOOKS} numbers of participants"));
+        }
+        let (first, last) = (looks[0], looks[looks.len() - 1]);
+        // Closer looks tell nothing new, and cost time to compute.
+        let apart = looks.windows(2).all(|pair| pair[1].saturating_sub(pair[0]) >= last.div_ceil(50));
+        if first < 2 || !apart {
+            return refuse("must ascend from 2 or more, each by at least 2 % of the last");
+        }
+        Ok(())
+    }
+}
+
 /// Columns of people at most: each is a test, for which all are corrected.
 const MOST_COLUMNS: usize = 20;
 
@@ -65,6 +124,9 @@ pub struct AnalysisSection {
     pub families: FamilyRule,
     /// The contrasts that matter most, such as `B-S` or `B-S within U`: a family of their own, corrected first.
     pub primary: Vec<String>,
+    /// When a study that runs is looked at; without it nobody looks before its end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopping: Option<StoppingSection>,
     /// The id of the method that stands at 0 on every scale that has it; otherwise the first of each group does.
     pub reference: Option<String>,
     /// The rules whose breakers the main analysis leaves out; empty if everybody counts.
@@ -90,6 +152,7 @@ impl Default for AnalysisSection {
             margin: 0.2,
             families: FamilyRule::ByKind,
             primary: Vec::new(),
+            stopping: None,
             reference: None,
             exclude: Vec::new(),
             people: None,
@@ -164,6 +227,9 @@ impl AnalysisSection {
             }
         }
         c.distinct(|i| format!("analysis.primary[{i}]"), &self.primary)?;
+        if let Some(stopping) = &self.stopping {
+            stopping.check(c, &self.primary)?;
+        }
         let rules: Vec<String> = self.exclude.iter().map(|rule| rule.code().into()).collect();
         c.distinct(|i| format!("analysis.exclude[{i}]"), &rules)?;
         self.check_people(c)

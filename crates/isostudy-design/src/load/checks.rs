@@ -275,6 +275,25 @@ pub(super) fn check_primary(c: &Checker<'_>, study: &Study) -> Result<(), Config
     }
 }
 
+/// Whether the last look of a stopping rule is at all participants of the plan.
+pub(super) fn check_stopping(c: &Checker<'_>, study: &Study) -> Result<(), ConfigError> {
+    let Some(stopping) = &study.file.analysis.stopping else { return Ok(()) };
+    let Some(forms) = &study.file.forms else {
+        return c.refuse(
+            "analysis.stopping",
+            format!("{:?}", stopping.looks),
+            "needs [forms]: who is asked?",
+        );
+    };
+    match stopping.looks.last() {
+        Some(&last) if last == forms.participants => Ok(()),
+        _ => {
+            let limit = format!("must end with forms.participants = {}", forms.participants);
+            c.refuse("analysis.stopping.looks", format!("{:?}", stopping.looks), limit)
+        }
+    }
+}
+
 /// Whether the study compares the method that its analysis calls the reference.
 pub(super) fn check_reference(c: &Checker<'_>, study: &Study) -> Result<(), ConfigError> {
     let Some(reference) = &study.file.analysis.reference else { return Ok(()) };

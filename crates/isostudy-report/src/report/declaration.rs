@@ -6,7 +6,7 @@ use crate::statement::Block;
 use crate::statement::{Finding, Standing};
 use crate::words::{counted, list, p};
 use isostudy_design::Study;
-use isostudy_design::config::{Declaration, FamilyRule};
+use isostudy_design::config::{Declaration, FamilyRule, StoppingBoundary};
 use isostudy_inference::hypotheses::Hypothesis;
 
 pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
@@ -19,6 +19,7 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
                 .to_owned(),
         ),
     }];
+    found.extend(evidence.study.and_then(|study| look(study, evidence)));
     found.extend(over_all(evidence));
     found.into_iter().map(Block::Finding).collect()
 }
@@ -71,6 +72,28 @@ fn of_study(study: &Study, evidence: &Evidence<'_>) -> Finding {
         section.level, section.margin, study.sha256
     );
     Finding::new(Standing::Noted, text)
+}
+
+/// Which planned look these answers are, and what it asks for.
+fn look(study: &Study, evidence: &Evidence<'_>) -> Option<Finding> {
+    let section = &study.file.analysis;
+    let rule = section.stopping.as_ref()?;
+    let look = evidence.hypotheses.iter().find_map(|of| of.look.as_ref())?;
+    let needed: Vec<String> = rule.looks.iter().map(ToString::to_string).collect();
+    let boundary = match rule.boundary {
+        StoppingBoundary::OBrienFleming => "O'Brien and Fleming's",
+        StoppingBoundary::Pocock => "Pocock's",
+    };
+    let text = format!(
+        "The study planned {} at {} participants, by {boundary} boundary. These answers are look {}. p of primary contrasts is the \
+         repeated p of this look: one test alone reaches level {} there with {}.",
+        counted(look.planned(), "look"),
+        list(&needed),
+        look.number(),
+        section.level,
+        p(look.nominal(section.level)),
+    );
+    Some(Finding::new(Standing::Noted, text))
 }
 
 /// What one correction over all tests leaves of the results.

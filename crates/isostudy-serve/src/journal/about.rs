@@ -1,6 +1,7 @@
 //! Answers about the person, which decide whether somebody is asked on, and how many people the study still takes.
 
 use super::departures::{Departure, Departures};
+use super::summary::OptionCount;
 use super::{GIVEN_UP_MS, Journal, files};
 use crate::record::{About, Refusal};
 use isostudy_design::config::AboutTime;
@@ -141,6 +142,23 @@ impl Journal {
             }
         }
         counts
+    }
+
+    /// Options that take so many people and no more, with those who have chosen them.
+    pub(super) fn option_counts(&self, now_ms: i64) -> Vec<OptionCount> {
+        let mut all = Vec::new();
+        for (id, most) in &self.quotas.options {
+            let Some(question) = self.questions.iter().find(|of| of.id == *id) else { continue };
+            let counts = self.counts(question, most.len(), "", now_ms);
+            let limited = most.iter().zip(counts).enumerate().filter(|(_, (most, _))| **most > 0);
+            all.extend(limited.map(|(place, (&most, people))| OptionCount {
+                question: id.clone(),
+                option: place + 1,
+                people,
+                most,
+            }));
+        }
+        all
     }
 
     /// Whether an option of this value has all the people that were wanted.

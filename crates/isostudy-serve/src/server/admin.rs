@@ -1,15 +1,18 @@
 //! What the researcher asks, token in hand. Nothing here tells what was chosen by method while the study runs, but the
-//! download, which is the researcher's to open.
+//! download, which is the researcher's to open, and what a stopping rule says that the study declared.
 
 use super::addresses::Peer;
 use super::api::Failure;
+use super::stopping::{self, Standing};
 use super::{SHORTEST_TOKEN, Settings, Shared, Site};
 use crate::export::{self, HEADER};
-use crate::journal::{Journal, Summary};
+use crate::journal::{Journal, OptionCount, Summary};
 use crate::{people, shown};
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
+use isostudy_design::forms::FormFile;
+use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -48,15 +51,50 @@ fn is_token(given: &[u8], token: &[u8]) -> bool {
     different == 0 && given.len() == token.len() && token.len() >= SHORTEST_TOKEN
 }
 
+/// How the study stands, for the page.
+#[derive(Debug, Serialize)]
+pub(super) struct Stand {
+    title: String,
+    /// By question about the person and option, in the order of [`Summary::options`]: the words that people read.
+    words: Vec<[String; 2]>,
+    #[serde(flatten)]
+    summary: Summary,
+    /// What a declared stopping rule says.
+    stopping: Option<Standing>,
+}
+
 /// `GET /api/admin/summary`.
 pub(super) async fn summary(
     site: Site,
     Extension(peer): Extension<Peer>,
     headers: HeaderMap,
-) -> Result<Json<Summary>, Failure> {
+) -> Result<Json<Stand>, Failure> {
     authorised(&site, peer, &headers).await?;
     let of = Arc::clone(&site);
-    Ok(Json(site.journal.read(move |journal| journal.summary(of.machine.now_ms(), &of.settings.key)).await?))
+    let read = move |journal: &Journal| {
+        let summary = journal.summary(of.machine.now_ms(), &of.settings.key)?;
+        Ok((summary, journal.finished()?))
+    };
+    let (summary, finished) = site.journal.read(read).await?;
+    let stopping = match &site.settings.rule {
+        Some(rule) => Some(stopping::standing(&site, rule, finished).await?),
+        None => None,
+    };
+    let file = &site.settings.file;
+    let words = words(file, &summary.options);
+    Ok(Json(Stand { title: file.title.clone(), words, summary, stopping }))
+}
+
+/// A question about the person and one of its options, in the study's first language.
+fn words(file: &FormFile, options: &[OptionCount]) -> Vec<[String; 2]> {
+    let spoken = file.spoken();
+    let say = |key: &str| spoken.first().and_then(|first| first.texts.get(key)).cloned().unwrap_or_default();
+    let of = |option: &OptionCount| {
+        let text = file.about.iter().find(|about| about.id == option.question).map(|about| &about.text);
+        let text = text.map_or("", String::as_str);
+        [say(text), say(&format!("{text}_{}", option.option))]
+    };
+    options.iter().map(of).collect()
 }
 
 /// `GET /api/admin/answers.csv`: the long format.

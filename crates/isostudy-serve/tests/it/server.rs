@@ -75,6 +75,7 @@ fn settings(folder: &Path, loss: Loss) -> Settings {
         panel: Default::default(),
         quotas: Default::default(),
         attention: Vec::new(),
+        rule: None,
         public_url: Some("https://study.example.org".parse().unwrap()),
         limits: Limits { stalled: STALLED, sessions_per_address: SESSIONS },
         loss,

@@ -2,6 +2,7 @@
 
 use super::bundle::{self, Made, stimuli, videos};
 use super::checked_study;
+use super::stopping;
 use super::study_forms::{forms, no_forms};
 use super::study_run::Run;
 use crate::kept_answers;
@@ -82,6 +83,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         panel: section.panel,
         quotas: questionnaire.quotas(),
         attention: questionnaire.attention(),
+        rule: stopping::rule(&study, &key),
         media,
         stimuli: stimuli(&out),
         answers: kept_answers::folder(&study, arguments.answers.as_ref()),

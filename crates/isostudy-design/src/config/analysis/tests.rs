@@ -47,6 +47,7 @@ fn every_key_is_read() {
             Exclusion::Time,
             Exclusion::Outlying,
         ],
+        stopping: None,
         people: None,
         subgroups: Vec::new(),
         covariates: Vec::new(),

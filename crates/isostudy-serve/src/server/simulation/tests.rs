@@ -46,6 +46,7 @@ fn settings() -> Settings {
         panel: Default::default(),
         quotas: Default::default(),
         attention: Vec::new(),
+        rule: None,
         public_url: None,
         limits: Limits { sessions_per_address: 0, ..Limits::default() },
         loss: Loss::Refuse,
