@@ -28,6 +28,7 @@ mod messages;
 mod named;
 mod page;
 mod parts;
+mod people;
 mod scattered;
 mod serve;
 mod server;

@@ -4,7 +4,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { CHOICES, PHONE, answer, open, questionnaire, ready, rows, serious } from './walk.mjs';
+import { CHOICES, PHONE, answer, open, over, questionnaire, ready, rows, serious } from './walk.mjs';
 
 const texts = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../../crates/isostudy-design/src/texts');
 /** A shipped file of texts: one key and one text a line. */
@@ -118,7 +118,7 @@ test('in Arabic everything but the pair runs from right to left', async () => {
   assert.deepEqual(await direction(), ['ar', 'rtl', ARABIC.title]);
   const latin = /[a-z]{2,}/i;
   await walk(page, arabic, async (where) => {
-    const wide = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+    const wide = await over(page);
     assert.ok(wide <= 0, `${where} is ${wide} px too wide`);
     assert.deepEqual(await serious(page), [], where);
     // A receipt is a number in hexadecimal digits.

@@ -4,7 +4,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { CHOICES, PHONE, all, answer, asGiven, folder, open, questionnaire, ready, rows, run, serious } from './walk.mjs';
+import { CHOICES, PHONE, all, answer, asGiven, folder, open, over, questionnaire, ready, rows, run, serious } from './walk.mjs';
 
 const ABOUT = `
 [[forms.about]]
@@ -55,7 +55,7 @@ async function choose(on, ...names) {
 const asked = (on, text) => on.getByText(text, { exact: true }).waitFor();
 const fits = async (on, where) => {
   assert.deepEqual(await serious(on), [], where);
-  const wide = await on.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+  const wide = await over(on);
   assert.ok(wide <= 0, `${where} is ${wide} px too wide`);
 };
 const agree = (on) => on.getByRole('button', { name: 'I agree, begin' }).click();

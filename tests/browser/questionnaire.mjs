@@ -6,7 +6,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { CHOICES, MOST, PHONE, TOKEN, all, answer, asGiven, begin, browser, folder, open, questionnaire, ready, rows, run, serious, serve as serving, shown, tab } from './walk.mjs';
+import { CHOICES, MOST, PHONE, TOKEN, all, answer, asGiven, begin, browser, folder, open, over, questionnaire, ready, rows, run, serious, serve as serving, shown, tab } from './walk.mjs';
 
 const made = questionnaire('study');
 const { config, out } = made;
@@ -206,7 +206,7 @@ test('what may pass is tried again, and what the server will never take ends the
   // Clocks and keys of the question that followed are gone.
   await refused.waitForTimeout(600);
   await refused.keyboard.press('1');
-  assert.match(await refused.locator('#view').textContent(), /place 2 of this form shows another pair/);
+  assert.match(await refused.locator('#view').textContent(), /Tell them this word: other-stimulus/);
   assert.equal(await refused.locator('#status').textContent(), '');
   const download = refused.waitForEvent('download');
   await refused.getByRole('link', { name: 'Download JSON' }).click();
@@ -320,7 +320,7 @@ test('accessible, and fit for a phone', async () => {
     const page = await open(server.address, { viewport });
     const judge = async (where) => {
       assert.deepEqual(await serious(page), [], where);
-      const wide = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+      const wide = await over(page);
       assert.ok(wide <= 0, `${where} is ${wide} px too wide`);
     };
     await judge('consent');

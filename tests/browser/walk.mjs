@@ -129,6 +129,9 @@ export async function all(page, how) {
   return given;
 }
 
+/** Pixels by which a page is too wide. A phone's window grows with the page, so the screen is what counts. */
+export const over = (page) => page.evaluate((width) => document.documentElement.scrollWidth - width, page.viewportSize().width);
+
 /** What axe calls serious on a page. */
 export async function serious(page) {
   await page.evaluate(axe);

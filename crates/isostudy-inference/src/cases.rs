@@ -59,12 +59,13 @@ struct Sums {
     by_value: BTreeMap<(usize, usize), Sum>,
 }
 
-/// Of the logarithms.
+/// Of the logarithms of ratios to the first value.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sum {
     cases: u64,
     /// Cases without a value above 0, which have no logarithm.
     missing: u64,
+    first: f64,
     logs: f64,
 }
 
@@ -144,15 +145,19 @@ impl Sum {
     fn add(&mut self, value: Option<f64>) {
         match value.filter(|value| *value > 0.0 && value.is_finite()) {
             Some(value) => {
+                // Of the ratio to the first: equal values have themselves as their mean, to the bit.
+                if self.cases == 0 {
+                    self.first = value;
+                }
                 self.cases += 1;
-                self.logs += value.ln();
+                self.logs += (value / self.first).ln();
             }
             None => self.missing += 1,
         }
     }
 
     fn mean(&self) -> Option<f64> {
-        (self.cases > 0).then(|| (self.logs / self.cases as f64).exp())
+        (self.cases > 0).then(|| self.first * (self.logs / self.cases as f64).exp())
     }
 }
 

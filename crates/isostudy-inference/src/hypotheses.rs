@@ -240,7 +240,7 @@ impl Hypothesis {
         match (self.adjusted <= level, self.equivalence.is_some_and(|p| p <= level)) {
             _ if !self.is_tested() => Conclusion::NotTested,
             _ if self.test.leaning() == 0 => Conclusion::NobodyLeans,
-            _ if self.least_possible() > level => Conclusion::TooFew,
+            _ if self.p_at_look(self.least_possible()) > level => Conclusion::TooFew,
             (true, _) if self.on_one_side => Conclusion::MayBeSide,
             (true, _) if self.is_difference() && self.test.apart > OTHER_THINGS => Conclusion::OtherParts,
             (true, false) => Conclusion::Differs,

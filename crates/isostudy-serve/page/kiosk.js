@@ -104,9 +104,14 @@ window.isostudyKiosk = ({ text, make, heading, post, key, leave }) => {
       at = true;
       wait();
     },
+    /** Somebody is at the start. */
+    touched() {
+      at = false;
+      wait();
+    },
     /** Keeps a session that is left until the server has its answers. */
-    keep({ token, answers, form }) {
-      if (answers.length === 0) return;
+    keep({ token, answers, form, ended }) {
+      if (ended || answers.length === 0) return;
       left.push({ token, answers, all: form.questions.length });
       store();
       send();

@@ -298,6 +298,7 @@
       choose.addEventListener('click', () => {
         speak(lang);
         consent(lost);
+        kiosk?.touched();
       });
       return choose;
     };
@@ -500,6 +501,8 @@
       if (!await send()) return;
       const reply = await insist('api/finish', { token: session.token });
       if (!reply) return;
+      session.ended = true;
+      keep();
       show(heading(text('thank_you')), make('p', { className: 'text' }, text('all_saved')), ...rights.completion(reply.completion), ...rights.receipt(session.token), ...nextParticipant());
       say('');
     } catch (error) {

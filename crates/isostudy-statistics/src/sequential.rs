@@ -215,6 +215,16 @@ mod tests {
         assert_eq!([0, 9, 10, 19, 20, 39, 40, 90].map(at), [1, 1, 1, 1, 2, 2, 3, 3]);
     }
 
+    /// `1 - multivariate_normal(cov=...).cdf(c, lower_limit=-c)` of SciPy 1.x, with `sqrt(n_i / n_j)` as correlations.
+    #[test]
+    fn repeated_p_is_scipys() {
+        let at = |boundary, people: &[u32], answered, p| Look::of(boundary, people, answered).repeated_p(p);
+        near(at(Boundary::Pocock, &[8, 12], 8, 2.0 / 256.0), 0.012_911_48, 1e-6);
+        near(at(Boundary::OBrienFleming, &[8, 12], 8, 2.0 / 256.0), 0.032_563_31, 1e-6);
+        near(at(Boundary::OBrienFleming, &[12, 20, 45, 60], 20, 0.01), 0.164_188_9, 2e-5);
+        near(at(Boundary::Pocock, &[12, 20, 45, 60], 45, 0.01), 0.029_697_0, 2e-5);
+    }
+
     /// Repeated p grows with p, is never below it, and never above the sum of the looks' own chances.
     #[test]
     fn repeated_p_is_in_order() {

@@ -446,6 +446,11 @@ fn full_study() -> StudyFile {
             margin: 0.2,
             families: FamilyRule::One,
             primary: vec![text()],
+            stopping: Some(StoppingSection {
+                looks: vec![8, 24],
+                boundary: StoppingBoundary::Pocock,
+                when: StopWhen::Any,
+            }),
             reference: Some(text()),
             exclude: vec![Exclusion::Outlying],
             people: Some(text()),

@@ -150,3 +150,31 @@ fn the_reference_is_a_method_that_is_compared() {
     assert_eq!((&*key, &*value), ("analysis.reference", "si"));
     assert!(limit.ends_with(": bi, bu"), "{limit}");
 }
+
+#[test]
+fn looks_that_nobody_could_keep_to_are_refused() {
+    let with_rule = |rule: &str| with(&format!("[analysis]\nprimary = [\"U-I\"]\nstopping = {{ {rule} }}"));
+    let section = with_rule("looks = [8, 24], boundary = \"obrien-fleming\"").unwrap();
+    let expected = StoppingSection {
+        looks: vec![8, 24],
+        boundary: StoppingBoundary::OBrienFleming,
+        when: StopWhen::All,
+    };
+    assert_eq!(section.stopping, Some(expected));
+    let any = with_rule("looks = [24], boundary = \"pocock\", when = \"any\"").unwrap().stopping.unwrap();
+    assert_eq!((any.boundary, any.when), (StoppingBoundary::Pocock, StopWhen::Any));
+    for (looks, said) in [
+        ("[]", "must be 1 to 10 numbers of participants"),
+        ("[1, 24]", "must ascend from 2"),
+        ("[12, 12, 24]", "must ascend from 2"),
+        ("[20, 8, 24]", "must ascend from 2"),
+        ("[2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 24]", "must be 1 to 10"),
+        ("[8, 20]", "must end with forms.participants = 24"),
+    ] {
+        let error = with_rule(&format!("looks = {looks}, boundary = \"pocock\"")).unwrap_err().to_string();
+        assert!(error.contains(said) && error.contains("analysis.stopping.looks"), "{looks}: {error}");
+    }
+    let error =
+        with("[analysis]\nstopping = { looks = [24], boundary = \"pocock\" }").unwrap_err().to_string();
+    assert!(error.contains("needs analysis.primary"), "{error}");
+}
