@@ -85,7 +85,8 @@ async function slow(address, lang) {
 async function reach(page, says, key = 'Tab') {
   const at = () => page.evaluate(() => {
     const on = document.activeElement;
-    return (on.closest('label') ?? on).textContent || on.getAttribute('aria-label') || on.tagName;
+    // Between the last and the first there is the page itself.
+    return on === document.body ? '' : (on.closest('label') ?? on).textContent || on.getAttribute('aria-label') || on.tagName;
   });
   for (let tabs = 0; tabs < 40; tabs += 1) {
     await page.keyboard.press(key);
@@ -107,12 +108,14 @@ for (const lang of ['de', 'ar']) {
       assert.deepEqual(await serious(page), [], where);
       const state = await page.evaluate(() => ({
         lang: document.documentElement.lang,
+        covered: [...document.querySelectorAll('#view > *')].filter((one) => one.getBoundingClientRect().bottom > document.getElementById('status').getBoundingClientRect().top + 1).map((one) => one.className),
         cut: [...document.querySelectorAll('button, legend, h1, h2, p, label, a')].filter((one) => one.offsetParent !== null && one.scrollWidth > one.clientWidth + 1 && getComputedStyle(one).display !== 'inline').map((one) => one.textContent),
       }));
       assert.equal(state.lang, lang);
       const wide = await over(page);
       assert.ok(wide <= 0, `${where} is ${wide} px too wide`);
       assert.deepEqual(state.cut, [], `${where}: text is cut`);
+      assert.deepEqual(state.covered, [], `${where}: something is covered`);
       if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, `${lang}-${where.replaceAll(' ', '-')}.png`) });
     };
     await page.getByRole('heading', { name: spoken.before }).waitFor();

@@ -16,9 +16,14 @@ window.isostudyKiosk = ({ text, make, heading, post, key, leave }) => {
   const dialog = make('dialog', { role: 'alertdialog' });
   document.body.append(dialog);
 
+  function close() {
+    dialog.close();
+    dialog.replaceChildren();
+  }
+
   function wait() {
     clearTimeout(timer);
-    if (dialog.open) dialog.close();
+    if (dialog.open) close();
     if (!at) timer = setTimeout(warn, IDLE_MS - WARNING_MS);
   }
 
@@ -30,7 +35,7 @@ window.isostudyKiosk = ({ text, make, heading, post, key, leave }) => {
     dialog.showModal();
     here.focus();
     timer = setTimeout(() => {
-      dialog.close();
+      close();
       leave();
     }, WARNING_MS);
   }
