@@ -153,12 +153,15 @@
         if (error.refusal === 'unknown-token') return forget();
         if (error.final) return refused(error);
         say(text('no_connection'));
+        offline = true;
         await new Promise((resolve) => { setTimeout(resolve, wait); });
       }
     }
   }
 
   let sending = null;
+  // Whether the page says that there is no connection.
+  let offline = false;
 
   /** Sends what is not acknowledged, in order; one at a time however often it is called. Returns whether all is. */
   function send() {
@@ -179,7 +182,9 @@
         }
         next.saved = true;
         keep();
-        if (!session.answers.some((a) => !a.saved)) say('');
+        // Nothing else that is said meanwhile goes with it.
+        if (offline && !session.answers.some((a) => !a.saved)) say('');
+        offline = false;
       } catch (error) {
         if (!error.conflict) throw error;
         if (conflict === next.order) {

@@ -152,7 +152,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
 
     /** Whether all of the answers is on the screen. */
     function visible() {
-      const { top, bottom } = question.getBoundingClientRect();
+      const { top, bottom } = question.lastChild.getBoundingClientRect();
       return top >= 0 && bottom <= window.innerHeight + 1;
     }
 
