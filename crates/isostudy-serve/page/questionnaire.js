@@ -183,8 +183,10 @@
         next.saved = true;
         keep();
         // Nothing else that is said meanwhile goes with it.
-        if (offline && !session.answers.some((a) => !a.saved)) say('');
-        offline = false;
+        if (offline && !session.answers.some((a) => !a.saved)) {
+          say('');
+          offline = false;
+        }
       } catch (error) {
         if (!error.conflict) throw error;
         if (conflict === next.order) {
