@@ -20,7 +20,7 @@ pub use analysis::{
     AnalysisSection, Declaration, Exclusion, FamilyRule, StopWhen, StoppingBoundary, StoppingSection,
 };
 pub use field::{FieldSection, Inside, MeshSourceSection, PointKernel, PointNormals};
-pub use forms::{FormsSection, OrderRule, Panel, ShownNames, SideRule, TrainingSection};
+pub use forms::{FormsSection, OrderRule, Panel, Presentation, ShownNames, SideRule, TrainingSection};
 pub(crate) use forms::{is_english_alone, is_false, languages};
 pub use methods::{FactorSection, LevelSection, MethodSection, SpeltLevel};
 pub(crate) use objects::check_objects;
@@ -93,6 +93,14 @@ pub struct StudyFile {
     pub analysis: AnalysisSection,
     /// Published numbers to compare with; leave out for a new study.
     pub published: Option<PublishedSection>,
+}
+
+impl StudyFile {
+    /// Folder with the library that draws models, as the file writes it: that of the forms, else that of the viewer.
+    pub fn three(&self) -> Option<&str> {
+        let of_forms = self.forms.as_ref().and_then(|forms| forms.three.as_deref());
+        of_forms.or_else(|| self.viewer.as_ref().map(|viewer| viewer.three.as_str()))
+    }
 }
 
 /// What the study is called, and its seed.

@@ -34,11 +34,12 @@ pub enum Rule {
     NamesReveal,
     TextsMissing,
     StimuliDiffer,
+    ModelsTooLarge,
 }
 
 impl Rule {
     /// Every rule, in the order of reports.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::SideConfounded,
         Self::SidesUnbalanced,
         Self::AppearancesUnequal,
@@ -51,6 +52,7 @@ impl Rule {
         Self::NamesReveal,
         Self::TextsMissing,
         Self::StimuliDiffer,
+        Self::ModelsTooLarge,
     ];
 
     /// Its id: stable, for scripts.
@@ -68,6 +70,7 @@ impl Rule {
             Self::NamesReveal => "names-reveal",
             Self::TextsMissing => "texts-missing",
             Self::StimuliDiffer => "stimuli-differ",
+            Self::ModelsTooLarge => "models-too-large",
         }
     }
 
@@ -117,6 +120,9 @@ impl Rule {
                 "The stimuli of one comparison differ in something besides the method: frames, duration, camera, \
                  background, colours, size or exposure."
             }
+            Self::ModelsTooLarge => {
+                "The models of a pair take more than 2 MB: participants wait, and phones run out of memory."
+            }
         }
     }
 
@@ -140,6 +146,9 @@ impl Rule {
             }
             Self::TextsMissing => "write the texts in [forms.texts], or in a file of forms.texts_files",
             Self::StimuliDiffer => "render both with the same turntable, shading and camera",
+            Self::ModelsTooLarge => {
+                "fewer triangles: a larger stimulus_spacing of the object, or a decimating finish of the methods"
+            }
         }
     }
 }

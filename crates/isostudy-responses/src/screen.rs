@@ -10,7 +10,7 @@ enum Column {
     Word(&'static str, &'static [&'static str], fn(&mut Screen) -> &mut Option<&'static str>),
 }
 
-const COLUMNS: [Column; 9] = [
+const COLUMNS: [Column; 10] = [
     Column::Number("viewport_width", |screen| &mut screen.viewport_width),
     Column::Number("viewport_height", |screen| &mut screen.viewport_height),
     Column::Number("pixel_ratio", |screen| &mut screen.pixel_ratio),
@@ -19,7 +19,8 @@ const COLUMNS: [Column; 9] = [
     Column::Word("input", &["mouse", "touch", "pen", "keyboard"], |screen| &mut screen.input),
     Column::Number("dropped", |screen| &mut screen.dropped),
     Column::Number("hidden_ms", |screen| &mut screen.hidden_ms),
-    Column::Word("shown_as", &["gif", "mp4", "webm"], |screen| &mut screen.shown_as),
+    Column::Word("shown_as", &["gif", "mp4", "webm", "model"], |screen| &mut screen.shown_as),
+    Column::Number("turned_deg", |screen| &mut screen.turned_deg),
 ];
 
 /// Columns of the long format that say it, in the order of [`Screen`].
@@ -54,8 +55,10 @@ pub struct Screen {
     pub dropped: Option<f32>,
     /// Milliseconds for which the page was out of sight.
     pub hidden_ms: Option<f32>,
-    /// `gif`, `mp4` or `webm`: how the pair was stored.
+    /// `gif`, `mp4`, `webm` or `model`: as what the pair was shown.
     pub shown_as: Option<&'static str>,
+    /// Degrees by which the models were turned, there and back; `None` of what cannot be turned.
+    pub turned_deg: Option<f32>,
 }
 
 /// The number of a screen in [`Responses::screens`](crate::Responses::screens).
@@ -111,9 +114,9 @@ mod tests {
 
     #[test]
     fn cells_come_back() {
-        let cells = ["390", "844", "2.625", "266", "stacked", "touch", "3", "0", "webm"];
+        let cells = ["390", "844", "2.625", "266", "stacked", "touch", "3", "0", "model", "147"];
         let mut screen = Screen::default();
-        assert_eq!(screen.cells(), <[String; 9]>::default());
+        assert_eq!(screen.cells(), <[String; 10]>::default());
         for (column, cell) in cells.iter().enumerate() {
             screen.set(column, cell).unwrap();
             for wrong in ["-1", "inf", "Safari"] {

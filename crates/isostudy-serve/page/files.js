@@ -5,9 +5,9 @@
 window.isostudyFiles = (study, session) => {
   const { participant, started, finished } = session;
   const { form } = session.form;
-  const SCREEN = ['viewport_width', 'viewport_height', 'pixel_ratio', 'surface_px', 'layout', 'input', 'dropped', 'hidden_ms', 'shown_as'];
-  const answers = session.answers.filter((answer) => answer.choice).map(({ order, stimulus, choice, rt_ms, answered, screen }) => ({
-    participant, form, order, stimulus, choice, rt_ms, answered, ...screen,
+  const SCREEN = ['viewport_width', 'viewport_height', 'pixel_ratio', 'surface_px', 'layout', 'input', 'dropped', 'hidden_ms', 'shown_as', 'turned_deg'];
+  const answers = session.answers.filter((answer) => answer.choice).map(({ order, stimulus, choice, rt_ms, answered, screen, track }) => ({
+    participant, form, order, stimulus, choice, rt_ms, answered, ...screen, ...(track && { track }),
   }));
   const names = ['participant', 'form', 'order', 'stimulus', 'choice', 'rt_ms', 'answered', ...SCREEN];
   const lines = [names, ...answers.map((row) => names.map((name) => row[name] ?? ''))];

@@ -4,18 +4,29 @@
 /**
  * What fetches a study's pairs. Each is in one file, in one or more kinds of which the browser plays the first that it can:
  * `study.media` lists them, with the bytes that every file of a kind has, and of videos the type that a browser is asked about.
+ * Models are a kind of their own, of which the bytes are read.
  */
 window.isostudyLoading = (study) => {
   // A page from a folder may show the files beside it, but not read them.
   const READS = location.protocol !== 'file:';
-  const playable = (kind) => !kind.type || document.createElement('video').canPlayType(kind.type) !== '';
+  /** Whether the browser draws models: for a page from a folder it reads none. */
+  function draws() {
+    if (!READS) return false;
+    const context = document.createElement('canvas').getContext('webgl2');
+    context?.getExtension('WEBGL_lose_context')?.loseContext();
+    return Boolean(context);
+  }
+
+  const playable = (kind) => (kind.kind === 'model' ? draws() : !kind.type || document.createElement('video').canPlayType(kind.type) !== '');
   let kinds = study.media.filter(playable);
-  // What is wanted, by code; `file` is a promise of { kind, frames, address }.
+  // What draws them takes as long to load as a pair.
+  if (kinds[0].kind === 'model') import('./turning.js').catch(() => {});
+  // What is wanted, by code; `file` is a promise of { kind, frames, address }, of models of { kind, bytes }.
   const wanted = new Map();
   // One after the other, so that what is needed first has the line for itself.
   let line = Promise.resolve();
 
-  /** The whole file as an address of its own; `entry` hears how much of it is there. */
+  /** The whole file; `entry` hears how much of it is there. */
   async function fetched(place, kind, entry) {
     const response = await fetch(place, { signal: entry.abort.signal });
     if (!response.ok) throw new Error(`${response.status}`);
@@ -29,7 +40,7 @@ window.isostudyLoading = (study) => {
       entry.told(entry.share);
     }
     if (bytes < kind.bytes) throw new Error(`${bytes} of ${kind.bytes} bytes`);
-    return URL.createObjectURL(new Blob(parts, { type: kind.type ? kind.type.split(';')[0] : 'image/gif' }));
+    return new Blob(parts, { type: kind.type ? kind.type.split(';')[0] : 'image/gif' });
   }
 
   function begin(code) {
@@ -37,8 +48,11 @@ window.isostudyLoading = (study) => {
     const entry = { share: 0, told: () => {}, abort: new AbortController() };
     const fetching = async () => {
       if (wanted.get(code) !== entry) throw new Error('not wanted any more');
-      const place = `stimuli/${encodeURIComponent(code)}.${kind.kind}`;
-      return { kind: kind.kind, frames: kind.frames, address: READS ? await fetched(place, kind, entry) : place };
+      const place = `stimuli/${encodeURIComponent(code)}.${kind.kind === 'model' ? 'glb' : kind.kind}`;
+      if (!READS) return { kind: kind.kind, frames: kind.frames, address: place };
+      const whole = await fetched(place, kind, entry);
+      if (kind.kind === 'model') return { kind: kind.kind, bytes: await whole.arrayBuffer() };
+      return { kind: kind.kind, frames: kind.frames, address: URL.createObjectURL(whole) };
     };
     entry.file = line.then(fetching);
     // What failed is begun anew when it is asked for again.
@@ -53,7 +67,7 @@ window.isostudyLoading = (study) => {
       if (!codes.includes(code)) {
         wanted.delete(code);
         entry.abort.abort();
-        entry.file.then(({ address }) => { if (READS) URL.revokeObjectURL(address); }, () => {});
+        entry.file.then(({ address }) => { if (READS && address) URL.revokeObjectURL(address); }, () => {});
       }
     }
   }
@@ -72,6 +86,8 @@ window.isostudyLoading = (study) => {
       keep([current, ...codes]);
       for (const code of codes) if (!wanted.has(code)) begin(code);
     },
+    /** Whether pairs are models, as far as is known. */
+    models: () => kinds[0].kind === 'model',
     /** Goes on without a kind that turned out not to play; false where there is no other. */
     without(kind) {
       if (kinds[0].kind !== kind) return true;

@@ -4,20 +4,22 @@
 /**
  * Puts a pair into `box`. `file` is { kind, frames, address }; both halves come from one moving picture, so that they cannot drift
  * apart: two windows on an animation (of one address, which browsers run on one clock), or two copies of each frame of a video.
+ * Models have { kind, bytes }: both are drawn by one camera, which the participant turns, and copied like the frames of a video.
  *
- * Resolves when its first frame can be seen. `changed` is called when it is laid out anew.
+ * Resolves when its first frame can be seen. `changed` is called when it is laid out anew; `events` are those of models (turning.js).
  */
-window.isostudyPair = async (study, text, file, box, make, changed) => {
+window.isostudyPair = async (study, text, file, box, make, changed, events) => {
   const FRAME_MS = study.loop_ms / file.frames;
   const [WIDTH, HEIGHT] = study.surface.map((pixels) => pixels * study.page_scale);
   // After so long a video whose bytes are all here is taken not to play.
   const NO_FRAME_MS = 5000;
   const NAMES = [text('upper'), text('lower')];
-  const video = file.kind === 'gif' ? null : make('video', { muted: true, loop: true, playsInline: true, preload: 'auto', className: 'source', 'aria-hidden': 'true' });
+  const isModel = file.kind === 'model';
+  const video = file.kind === 'gif' || isModel ? null : make('video', { muted: true, loop: true, playsInline: true, preload: 'auto', className: 'source', 'aria-hidden': 'true' });
 
   const halves = ['left', 'right'].map((side, i) => {
-    const moving = video ? null : make('img', { alt: text(`${side}_turning`), draggable: false, hidden: true });
-    const still = make('canvas', { role: 'img', 'aria-label': text(video ? `${side}_surface` : `${side}_stopped`) });
+    const moving = video || isModel ? null : make('img', { alt: text(`${side}_turning`), draggable: false, hidden: true });
+    const still = make('canvas', { role: 'img', 'aria-label': text(video || isModel ? `${side}_surface` : `${side}_stopped`) });
     const name = make('span', { className: 'name', 'aria-hidden': 'true' }, NAMES[i]);
     return { moving, still, element: make('div', { className: 'half' }, ...(moving ? [moving] : []), still, name) };
   });
@@ -47,20 +49,44 @@ window.isostudyPair = async (study, text, file, box, make, changed) => {
     });
   }
 
-  box.classList.toggle('enlarged', study.page_scale > 1);
+  // The size of each surface on the screen, in CSS pixels.
+  let [surface, high] = [0, 0];
+  let waits = false;
+  /** Draws models at the next frame, once. */
+  function redraw() {
+    if (waits || surface === 0) return;
+    waits = true;
+    requestAnimationFrame(() => {
+      waits = false;
+      drawModels();
+    });
+  }
+  function drawModels() {
+    const ratio = Math.min(window.devicePixelRatio, 2);
+    const [wide, tall] = [surface, high].map((pixels) => Math.max(1, Math.round(pixels * ratio)));
+    model.draw(wide, tall);
+    draw(model.canvas, 2 * wide, tall);
+  }
+
+  const { turnable } = isModel ? await import('./turning.js') : {};
+  const model = isModel ? turnable(file.bytes, study.shading, box, redraw, events) : null;
+  if (isModel) {
+    box.setAttribute('role', 'group');
+    box.setAttribute('aria-label', text('turn_pair'));
+  }
+  box.classList.toggle('enlarged', study.page_scale > 1 && !isModel);
   box.replaceChildren(...halves.map((half) => half.element), ...(video ? [video] : []));
   if (video) {
     await loaded(video, 'loadedmetadata');
     await firstFrame();
     draw(video, video.videoWidth, video.videoHeight);
-  } else {
+  } else if (!isModel) {
     await Promise.all(halves.map((half) => loaded(half.moving, 'load')));
     const { moving } = halves[0];
     draw(moving, moving.naturalWidth, moving.naturalHeight);
   }
 
   let stacked = false;
-  let surface = 0;
   let largest = 0;
   let needed = 0;
 
@@ -82,8 +108,11 @@ window.isostudyPair = async (study, text, file, box, make, changed) => {
     box.classList.toggle('stacked', stacked);
     needed = stacked ? 2 * h + 4 : h;
     if (!whole) box.style.maxHeight = `${needed}px`;
-    if (surface !== w) changed(w);
-    surface = w;
+    const was = surface;
+    [surface, high] = [w, h];
+    if (was !== w) changed(w);
+    // At once, since a canvas without a picture would be seen.
+    if (model && w > 0) drawModels();
     largest = Math.max(largest, w);
   }
   // What is said below may need another line.
@@ -106,9 +135,12 @@ window.isostudyPair = async (study, text, file, box, make, changed) => {
 
   return {
     layout,
+    /** Models: how to reset them, and from where they were looked at since a time. */
+    model,
     /** Lets it turn. Rejects where the browser does not let it. */
     async play() {
       if (video) await video.play();
+      if (isModel) return;
       running = true;
       drawn = null;
       for (const { moving, still } of halves) if (moving) [moving.hidden, still.hidden] = [false, true];
@@ -125,9 +157,15 @@ window.isostudyPair = async (study, text, file, box, make, changed) => {
       layout: stacked ? 'stacked' : 'beside',
       dropped: Math.max(dropped, video?.getVideoPlaybackQuality?.().droppedVideoFrames ?? 0),
       shown_as: file.kind,
+      ...(model && { turned_deg: model.turnedDeg() }),
     }),
     leave() {
       running = false;
+      if (model) {
+        model.leave();
+        box.removeAttribute('role');
+        box.removeAttribute('aria-label');
+      }
       video?.pause();
       squeezed.disconnect();
       window.removeEventListener('resize', layout);

@@ -173,12 +173,21 @@
     for (let conflict = null; session;) {
       const next = session.answers.find((answer) => !answer.saved);
       if (!next) return true;
-      const { saved, answered, ...answer } = next;
+      const { saved, answered, track, ...answer } = next;
       const { token } = session;
       try {
         if (!await insist('api/answers', { token, ...answer })) {
           if (session && session.token !== token) continue;
           return false;
+        }
+        // After the answer, so that none waits for it, and no answer is taken for saved without it.
+        if (track) {
+          const { order, change } = answer;
+          if (!await insist('api/cameras', { token, order, change, track })) {
+            if (session && session.token !== token) continue;
+            return false;
+          }
+          delete next.track;
         }
         next.saved = true;
         keep();
@@ -258,7 +267,7 @@
     $('progress-row').hidden = true;
     const begin = make('button', { type: 'button', className: 'main' }, text('begin'));
     const parts = [heading(text('before')), ...languages(lost), make('p', { className: 'text' }, text('consent')),
-      make('p', { className: 'text' }, text('screen_note'))];
+      make('p', { className: 'text' }, text('screen_note')), ...(study.shading ? [make('p', { className: 'text' }, text('turn_note'))] : [])];
     if (study.server && WHO.some(given)) {
       parts.push(make('p', { className: 'text' }, text('panel_note')));
     }
@@ -451,13 +460,13 @@
     const last = session.answers[question - 1];
     $('back').hidden = !study.revises || back || practice || !last?.choice;
     for (const name of ['back', 'stop']) $(name).textContent = text(name);
-    leave = trial(codes[at], title, codes.slice(at + 1, at + 1 + AHEAD), (choice, times, screen) => {
+    leave = trial(codes[at], title, codes.slice(at + 1, at + 1 + AHEAD), (choice, times, screen, track) => {
       merge();
       if (place !== done()) {
         say(text('other_tab'));
       } else {
         say('');
-        const answer = { order: at + 1, stimulus: codes[at], choice, ...times, screen };
+        const answer = { order: at + 1, stimulus: codes[at], choice, ...times, screen, ...(track && !practice && { track }) };
         if (practice) session.trained += 1;
         else if (back) session.answers[question] = { ...answer, change: (session.answers[question].change ?? 0) + 1 };
         else session.answers.push(answer);
@@ -477,8 +486,9 @@
       keep();
       next();
     });
-    const how = text(TOUCH ? 'how_touch' : 'how_keys');
-    show(heading(text('what_to_do')), make('p', { className: 'text' }, text('instructions')), make('p', { className: 'text' }, `${how} ${text('how_soon')}`),
+    const how = [...(loading.models() ? [text(TOUCH ? 'how_turn_touch' : 'how_turn')] : []), text(TOUCH ? 'how_touch' : 'how_keys')].join(' ');
+    const soon = text(loading.models() ? 'how_soon_turned' : 'how_soon');
+    show(heading(text('what_to_do')), make('p', { className: 'text' }, text('instructions')), make('p', { className: 'text' }, `${how} ${soon}`),
       make('div', { className: 'row' }, go));
     const { training, questions } = session.form;
     loading.ahead(null, [...training, ...questions].slice(0, 1));

@@ -13,6 +13,8 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
   const LONGEST_MS = 86400000;
   const STILL = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
   const AGAIN_MS = 3000;
+  // Degrees after which models have been looked at from another side, however short the time.
+  const TURNED_DEG = 90;
 
   // What last touched the page, for browsers whose clicks do not say it.
   let pointer = 'mouse';
@@ -24,12 +26,13 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
 
   /**
    * Shows one pair. `answer` is called with the choice, its time in milliseconds since the pair was seen, and the screen it was
-   * given on. `coming` are the pairs that follow. Returns what ends the question.
+   * given on, and from where models were looked at. `coming` are the pairs that follow. Returns what ends the question.
    */
   return (code, title, coming, answer) => {
     const words = make('p', { className: 'wait' });
     const pair = make('div', { className: 'pair', 'data-code': code }, words);
     const pause = make('button', { type: 'button', className: 'soon' }, text('play'));
+    const reset = make('button', { type: 'button', hidden: true }, text('reset'));
     const larger = make('button', { type: 'button', className: 'soon', 'aria-pressed': 'false' }, text('enlarge'));
     const smaller = make('button', { type: 'button', className: 'smaller' }, text('smaller'));
     const buttons = CHOICES.map((choice, i) => make('button', { type: 'button', 'aria-disabled': 'true', 'data-choice': choice, 'aria-keyshortcuts': KEYS[i].join(' ') },
@@ -54,6 +57,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
     function wait() {
       if (shown === null) return text('wait_loading');
       if (small) return text('wait_small');
+      if (shown.model) return text('wait_turn');
       return text(moving === null ? 'wait_play' : 'wait_watch');
     }
 
@@ -138,7 +142,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
         hidden_ms: Math.min(Math.round(hidden), LONGEST_MS),
         ...shown.shown(),
       };
-      answer(CHOICES[i], { rt_ms, answered: new Date().toISOString() }, screen);
+      answer(CHOICES[i], { rt_ms, answered: new Date().toISOString() }, screen, shown.model?.track(seenAt));
     }
 
     function enlarge(large) {
@@ -180,6 +184,25 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
       if (seenAt === null) see(); else if (wanted) play();
     }
 
+    /** Models: whoever has turned them far enough has seen them, and without WebGL there are turntables. */
+    const events = {
+      turned(degrees) {
+        if (open || moving === null || degrees < TURNED_DEG) return;
+        clearTimeout(timer);
+        unlock();
+      },
+      lost() {
+        if (over || !loading.without('model')) return;
+        if (moving !== null) stop();
+        shown?.leave();
+        shown = null;
+        [seenAt, watched, open, wanted] = [null, 0, false, !STILL];
+        buttons.forEach((button) => button.setAttribute('aria-disabled', 'true'));
+        [pause.hidden, reset.hidden] = [false, true];
+        load();
+      },
+    };
+
     async function load() {
       let file = null;
       try {
@@ -187,7 +210,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
           if (!over && shown === null) words.textContent = share > 0 ? text('loading_share', { share: Math.floor(100 * share) }) : text('loading');
         });
         if (over) return;
-        const made = await window.isostudyPair(study, text, file, pair, make, laidOut);
+        const made = await window.isostudyPair(study, text, file, pair, make, laidOut, events);
         if (over) {
           made.leave();
           return;
@@ -195,6 +218,8 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
         shown = made;
         pair.append(smaller);
         pause.className = larger.className = '';
+        // Nothing moves by itself.
+        if (made.model) [wanted, pause.hidden, reset.hidden] = [true, true, false];
         loading.ahead(code, coming);
         see();
       } catch {
@@ -217,6 +242,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
         stop();
       }
     });
+    reset.addEventListener('click', () => shown.model.reset());
     larger.addEventListener('click', () => enlarge(true));
     pair.addEventListener('click', () => enlarge(!pair.classList.contains('large')));
     buttons.forEach((button, i) => {
@@ -225,7 +251,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
     });
     document.addEventListener('keydown', key);
     document.addEventListener('visibilitychange', turnedAway);
-    show(make('div', { className: 'row top' }, heading(title), make('div', { className: 'tools' }, larger, pause)), pair, question);
+    show(make('div', { className: 'row top' }, heading(title), make('div', { className: 'tools' }, larger, pause, reset)), pair, question);
     document.body.className = 'asking';
     load();
     return () => {

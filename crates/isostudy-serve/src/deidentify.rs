@@ -1,5 +1,6 @@
 //! Answers that can be given to others.
 
+use crate::cameras::Tracked;
 use crate::export::Given;
 use crate::journal::Departures;
 use crate::record::Answer;
@@ -20,6 +21,29 @@ pub fn deidentified(given: &[Given]) -> Vec<Given> {
     shared.sort_by(|a, b| (&a.participant, a.answer.order).cmp(&(&b.participant, b.answer.order)));
     shared
 }
+
+/// The same cameras under the names that participants have for others.
+pub fn deidentified_cameras(all: &[Tracked], names: &BTreeMap<String, String>) -> Vec<Tracked> {
+    let renamed =
+        |of: &Tracked| Some(Tracked { participant: names.get(&of.participant)?.clone(), ..of.clone() });
+    let mut shared: Vec<Tracked> = all.iter().filter_map(renamed).collect();
+    shared.sort_by(|a, b| (&a.participant, a.order).cmp(&(&b.participant, b.order)));
+    shared
+}
+
+/// What the columns of `cameras.csv` mean, in Markdown.
+pub const CAMERAS: &str = "
+`cameras.csv` says from where participants looked at models that they turned, a row for each camera.
+
+| column | meaning | values |
+|---|---|---|
+| `participant`, `form`, `order`, `question`, `stimulus` | as above | |
+| `hz` | cameras per second at most, while the models were turned | 20, or less for very long answers |
+| `t_ms` | time since the pair was on the screen | milliseconds |
+| `azimuth_deg` | azimuth of the camera from +x to +y | degrees; beyond 180 after several turns |
+| `elevation_deg` | elevation of the camera over the horizon | degrees |
+| `distance` | distance of the camera from the middle | 1 at first |
+";
 
 /// What each participant is called for others.
 pub fn names(given: &[Given]) -> BTreeMap<String, String> {
@@ -92,7 +116,8 @@ pub fn codebook(
          | `input` | what the answer was given with | `mouse`, `touch`, `pen`, `keyboard` |\n\
          | `dropped` | frames that the browser did not show | from 0 |\n\
          | `hidden_ms` | time for which the page was out of sight, within `rt_ms` | milliseconds |\n\
-         | `shown_as` | how the pair was stored | `gif`, `mp4`, `webm` |\n{about}",
+         | `shown_as` | as what the pair was shown | `gif`, `mp4`, `webm`, `model` |\n\
+         | `turned_deg` | degrees by which the participant turned the models, there and back | from 0; empty unless models were shown |\n{about}",
         answers = count(answers, "answer"),
         participants = count(participants, "participant"),
         title = escaped(&file.title),
@@ -155,6 +180,22 @@ mod tests {
             shared.iter().map(|g| (g.participant.as_str(), g.answer.order)).collect();
         assert_eq!(found, [("p1", 1), ("p2", 1), ("p3", 1), ("p3", 2)]);
         assert!(shared.iter().all(|g| g.form == 1 && g.answer.rt_ms == 900));
+    }
+
+    #[test]
+    fn cameras_are_renamed_as_answers_are() {
+        let of = |participant: &str, order| Tracked {
+            participant: participant.into(),
+            form: 1,
+            order,
+            stimulus: "tani".into(),
+            track: crate::cameras::Track { hz: 20.0, cameras: vec![0, 450, 222, 1000] },
+        };
+        let names = [("c0", "p2"), ("0a", "p1")].map(|(name, shared)| (name.to_owned(), shared.to_owned()));
+        let shared =
+            deidentified_cameras(&[of("c0", 2), of("0a", 3), of("c0", 1), of("zz", 1)], &names.into());
+        let found: Vec<(&str, u32)> = shared.iter().map(|of| (of.participant.as_str(), of.order)).collect();
+        assert_eq!(found, [("p1", 3), ("p2", 1), ("p2", 2)]);
     }
 
     fn file() -> FormFile {

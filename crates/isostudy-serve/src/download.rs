@@ -1,5 +1,6 @@
 //! Files that the page lets participants download where there is no server.
 
+use crate::cameras::{Track, Tracked};
 use crate::export::Given;
 use crate::record::{About, Answer, Choice};
 use crate::screen;
@@ -34,6 +35,11 @@ struct Row {
     hidden_ms: Cell,
     #[serde(default)]
     shown_as: Cell,
+    #[serde(default)]
+    turned_deg: Cell,
+    /// From where models were looked at, which JSON alone has.
+    #[serde(default)]
+    track: Option<Track>,
 }
 
 /// A cell of the CSV, or a value of the JSON.
@@ -112,6 +118,12 @@ pub enum DownloadError {
         /// What is wrong.
         why: String,
     },
+    /// Not what the page says of cameras.
+    #[error("the answer at place {order}: no page notes such cameras")]
+    Cameras {
+        /// Which answer.
+        order: u32,
+    },
 }
 
 /// The answers of one download, CSV or JSON by their first character.
@@ -142,6 +154,25 @@ pub fn read_about(text: &str) -> Result<Option<(String, About)>, DownloadError> 
     }
     let File { participant, about, .. } = serde_json::from_str(text)?;
     Ok(participant.zip(about))
+}
+
+/// From where models were looked at, answer by answer. CSV does not say it.
+///
+/// # Errors
+/// [`DownloadError`].
+pub fn read_cameras(text: &str) -> Result<Vec<Tracked>, DownloadError> {
+    if !text.trim_start().starts_with('{') {
+        return Ok(Vec::new());
+    }
+    let File { answers, .. } = serde_json::from_str(text)?;
+    let of = |Row { participant, form, order, stimulus, track, .. }: Row| {
+        let track = track?;
+        Some(match track.is_sound() {
+            true => Ok(Tracked { participant, form, order, stimulus, track }),
+            false => Err(DownloadError::Cameras { order }),
+        })
+    };
+    answers.into_iter().filter_map(of).collect()
 }
 
 /// The columns that every download has had.
@@ -210,6 +241,7 @@ fn given(row: Row) -> Result<Given, DownloadError> {
         row.dropped,
         row.hidden_ms,
         row.shown_as,
+        row.turned_deg,
     ];
     let Row { participant, form, order, stimulus, choice, rt_ms, .. } = row;
     let screen = screen::of_cells(&cells.each_ref().map(Cell::text))
@@ -268,18 +300,33 @@ mod tests {
         let columns = crate::screen::COLUMNS.join(",");
         let csv = format!(
             "participant,form,order,stimulus,choice,rt_ms,answered,{columns}\r\n\
-             ab,2,2,tani,NP,812,z,390,844,2.625,266,stacked,touch,3,40,gif\r\nab,2,3,zeti,L,9,z,,,,,,,,,\r\n"
+             ab,2,2,tani,NP,812,z,390,844,2.625,266,stacked,touch,3,40,model,91\r\nab,2,3,zeti,L,9,z,,,,,,,,,,\r\n"
         );
         let json = r#"{"schema":1,"study":"s","participant":"ab","form":2,"started":"x","finished":"y","answers":[
             {"participant":"ab","form":2,"order":2,"stimulus":"tani","choice":"NP","rt_ms":812,"answered":"z","viewport_width":390,
              "viewport_height":844,"pixel_ratio":2.625,"surface_px":266,"layout":"stacked","input":"touch","dropped":3,
-             "hidden_ms":40,"shown_as":"gif"},
+             "hidden_ms":40,"shown_as":"model","turned_deg":91},
             {"participant":"ab","form":2,"order":3,"stimulus":"zeti","choice":"L","rt_ms":9,"answered":"z"}]}"#;
         let (csv, json) = (read(&csv, "s").unwrap(), read(json, "s").unwrap());
         assert_eq!(csv, json);
         let screen = csv[0].answer.screen.unwrap();
         assert_eq!((screen.pixel_ratio, screen.dropped, screen.hidden_ms), (2.625, 3, 40));
         assert_eq!(csv[1].answer.screen, None);
+    }
+
+    #[test]
+    fn cameras_are_in_the_json_alone() {
+        let json = r#"{"schema":1,"study":"s","participant":"ab","form":2,"started":"x","finished":"y","answers":[
+            {"participant":"ab","form":2,"order":2,"stimulus":"tani","choice":"NP","rt_ms":812,"answered":"z",
+             "track":{"hz":20,"cameras":[0,450,222,1000,51,460,222,1000]}},
+            {"participant":"ab","form":2,"order":3,"stimulus":"zeti","choice":"L","rt_ms":9,"answered":"z"}]}"#;
+        let found = read_cameras(json).unwrap();
+        assert_eq!((found.len(), found[0].order, found[0].stimulus.as_str()), (1, 2, "tani"));
+        assert_eq!(found[0].track.cameras().last(), Some((51, 46.0, 22.2, 1.0)));
+        assert_eq!(read_cameras(CSV).unwrap(), []);
+        assert_eq!(read(json, "s").unwrap().len(), 2);
+        let wrong = read_cameras(&json.replace("51,460", "-1,460")).unwrap_err().to_string();
+        assert_eq!(wrong, "the answer at place 2: no page notes such cameras");
     }
 
     #[test]

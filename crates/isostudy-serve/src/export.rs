@@ -32,7 +32,7 @@ pub struct Line<'a> {
     rt_ms: u32,
     role: &'a isostudy_design::forms::Role,
     stimulus: &'a str,
-    screen: [String; 9],
+    screen: [String; screen::COLUMNS.len()],
 }
 
 /// An answer that the key does not fit.
@@ -103,7 +103,7 @@ pub fn csv<T: Serialize>(lines: &[T], header: &[&str]) -> String {
 }
 
 /// The columns of [`Line`].
-pub const HEADER: [&str; 21] = isostudy_responses::LONG_WRITTEN_WITH_SCREENS;
+pub const HEADER: [&str; 22] = isostudy_responses::LONG_WRITTEN_WITH_SCREENS;
 
 #[cfg(test)]
 pub(crate) mod tests {
@@ -130,6 +130,7 @@ pub(crate) mod tests {
             least_age: None,
             retention_days: None,
             go_back: false,
+            stimulus: Default::default(),
             loop_ms: 100,
             page_scale: 1,
             forms: Vec::new(),

@@ -9,6 +9,7 @@
 //! if it is made here, are their owner's alone. One process changes them at a time (`lock`); others may read meanwhile.
 
 mod about;
+mod cameras;
 mod change;
 mod copy;
 mod departures;

@@ -16,6 +16,7 @@
 //! - No address, agent or other trace of a participant is kept but the identifiers of a panel, which are in a file of their own.
 
 pub mod anonymity;
+pub mod cameras;
 mod completions;
 pub mod deidentify;
 pub mod download;

@@ -47,6 +47,8 @@ pub enum MediaFormat {
     WebM,
     /// The animation, which every browser shows.
     Gif,
+    /// Both surfaces as models, in one binary glTF: `model` to the page.
+    Model,
 }
 
 impl MediaFormat {
@@ -56,6 +58,7 @@ impl MediaFormat {
             Self::Mp4 => "mp4",
             Self::WebM => "webm",
             Self::Gif => "gif",
+            Self::Model => "glb",
         }
     }
 
@@ -65,27 +68,74 @@ impl MediaFormat {
             Self::Mp4 => "video/mp4",
             Self::WebM => "video/webm",
             Self::Gif => "image/gif",
+            Self::Model => "model/gltf-binary",
         }
     }
 
-    /// What a browser is asked whether it plays; nobody asks about animations.
+    /// What a browser is asked whether it plays; nobody asks about animations, and about models otherwise.
     fn asked(self) -> Option<&'static str> {
         match self {
             Self::Mp4 => Some("video/mp4; codecs=\"avc1.640028\""),
             Self::WebM => Some("video/webm; codecs=\"vp9\""),
-            Self::Gif => None,
+            Self::Gif | Self::Model => None,
         }
     }
 }
 
-/// In what files the pairs are, and how they are shown.
+/// Light and colours of models, as of the animations: see the study's `[shading]`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelShading {
+    /// The direction in which light travels; not normalised.
+    pub light: [f64; 3],
+    /// Whether the light goes with the camera, and else stands still.
+    pub follows: bool,
+    /// Share of the light that comes from all sides.
+    pub ambient: f64,
+    /// Colour towards the light.
+    pub lit: [f64; 3],
+    /// Colour at the terminator.
+    pub shade: [f64; 3],
+    /// Colour of the highlight.
+    pub highlight: [f64; 3],
+    /// Colour where there is no surface.
+    pub background: [f64; 3],
+    /// Colour of triangle edges over a surface.
+    pub wire: [f64; 3],
+    /// Width of triangle edges as a share of the height of a surface.
+    pub wire_width: f64,
+}
+
+/// A file that the page needs to draw models.
 #[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LibraryFile {
+    /// Its name beside the page.
+    pub name: &'static str,
+    /// The MIME type.
+    pub mime: &'static str,
+    /// What is in it.
+    pub content: String,
+}
+
+/// The page's own files that draw and turn models; they import `three.module.min.js` beside them.
+pub fn model_scripts() -> [LibraryFile; 2] {
+    let of = |name, content: &str| LibraryFile {
+        name,
+        mime: "text/javascript; charset=utf-8",
+        content: content.to_owned(),
+    };
+    [of("model.js", include_str!("../page/model.js")), of("turning.js", include_str!("../page/turning.js"))]
+}
+
+/// In what files the pairs are, and how they are shown.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Media {
     /// Every kind that there is a file of for every pair, with the bytes of each and its frames a turn; the page takes the first
     /// that the browser plays.
     pub kinds: Vec<(MediaFormat, u64, u32)>,
     /// Width and height of each surface as it was made, in pixels: shown no larger than that, times `page_scale`.
     pub surface: [u32; 2],
+    /// How models are drawn, where there are any.
+    pub shading: Option<ModelShading>,
 }
 
 impl Media {
@@ -126,6 +176,9 @@ struct Known<'a> {
     page_scale: u32,
     surface: [u32; 2],
     media: Vec<KnownKind>,
+    /// How models are drawn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shading: Option<&'a ModelShading>,
     /// Pairs that every form shows first: fetched before anybody has a form.
     first: &'a [String],
     about: &'a [AboutEntry],
@@ -170,6 +223,7 @@ pub fn forms_js(file: &FormFile, digest: &str, media: &Media, served: Option<Ser
         page_scale: file.page_scale,
         surface: media.surface,
         media: media.kinds.iter().map(known_kind).collect(),
+        shading: media.shading.as_ref(),
         first: if file.forms.iter().all(|form| form.training == first) { first } else { &[] },
         about: &file.about,
         contact: file.contact.as_deref(),

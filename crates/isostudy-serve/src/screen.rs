@@ -29,7 +29,7 @@ pub enum Input {
     Keyboard,
 }
 
-/// How the pair was stored.
+/// As what a pair was shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ShownAs {
@@ -39,6 +39,8 @@ pub enum ShownAs {
     Mp4,
     /// VP9 video.
     WebM,
+    /// Models that the participant turns.
+    Model,
 }
 
 /// On what an answer was given. Widths and heights are in CSS pixels.
@@ -61,8 +63,11 @@ pub struct Screen {
     pub dropped: u32,
     /// Milliseconds for which the page was out of sight after the pair was first seen.
     pub hidden_ms: u32,
-    /// How the pair was stored.
+    /// As what the pair was shown.
     pub shown_as: ShownAs,
+    /// Degrees by which models were turned, there and back: of models alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turned_deg: Option<u32>,
 }
 
 /// Columns of answers, in the order of [`Screen`].
@@ -70,6 +75,8 @@ pub use isostudy_responses::SCREEN_COLUMNS as COLUMNS;
 
 /// Largest window that is believed.
 const LARGEST_PX: u32 = 100_000;
+/// Most degrees that are believed, ten thousand turns.
+const MOST_DEG: u32 = 3_600_000;
 /// Steps in which windows are told to others.
 const STEP_PX: u32 = 50;
 
@@ -80,6 +87,7 @@ impl Screen {
         [viewport_width, viewport_height, surface_px].iter().all(|&pixels| pixels <= LARGEST_PX)
             && (0.01..=100.0).contains(&pixel_ratio)
             && self.hidden_ms <= LONGEST_MS
+            && self.turned_deg.is_none_or(|deg| deg <= MOST_DEG && self.shown_as == ShownAs::Model)
     }
 
     /// As it can be given to others: windows, which may be as large as nobody else's, rounded down to whole steps of 50 pixels.
@@ -95,11 +103,13 @@ impl Screen {
 }
 
 /// The cells of an answer's [`COLUMNS`]: empty where nothing was recorded.
-pub(crate) fn cells(screen: Option<&Screen>) -> [String; 9] {
+pub(crate) fn cells(screen: Option<&Screen>) -> [String; COLUMNS.len()] {
     let Some(screen) = screen else { return Default::default() };
     let said = serde_json::to_value(screen).expect("numbers and words alone");
     COLUMNS.map(|name| match &said[name] {
         serde_json::Value::String(word) => word.clone(),
+        // What the page has no number for.
+        serde_json::Value::Null => String::new(),
         // A whole ratio has no point.
         number => number.as_f64().map_or(String::new(), |number| number.to_string()),
     })
@@ -109,12 +119,15 @@ pub(crate) fn cells(screen: Option<&Screen>) -> [String; 9] {
 ///
 /// # Errors
 /// What is wrong, where some are there and not all, or one is none of what it can be.
-pub(crate) fn of_cells(cells: &[String; 9]) -> Result<Option<Screen>, String> {
+pub(crate) fn of_cells(cells: &[String; COLUMNS.len()]) -> Result<Option<Screen>, String> {
     if cells.iter().all(String::is_empty) {
         return Ok(None);
     }
     let mut said = serde_json::Map::new();
     for (name, cell) in COLUMNS.iter().zip(cells) {
+        if *name == "turned_deg" && cell.is_empty() {
+            continue;
+        }
         let number = cell.parse::<serde_json::Number>().map(serde_json::Value::Number);
         said.insert((*name).to_owned(), number.unwrap_or_else(|_| cell.as_str().into()));
     }
@@ -135,17 +148,25 @@ mod tests {
         input: Input::Touch,
         dropped: 3,
         hidden_ms: 0,
-        shown_as: ShownAs::WebM,
+        shown_as: ShownAs::Model,
+        turned_deg: Some(147),
     };
 
     #[test]
     fn cells_say_what_was_recorded() {
-        let expected = ["390", "844", "2.625", "266", "stacked", "touch", "3", "0", "webm"].map(String::from);
+        let expected =
+            ["390", "844", "2.625", "266", "stacked", "touch", "3", "0", "model", "147"].map(String::from);
         assert_eq!(cells(Some(&PHONE)), expected);
         assert_eq!(of_cells(&expected), Ok(Some(PHONE)));
         assert_eq!(of_cells(&cells(None)), Ok(None));
+        let mut turntable = expected.clone();
+        turntable[8] = "gif".into();
+        assert!(of_cells(&turntable).is_err(), "an animation cannot be turned");
+        turntable[9] = String::new();
+        assert_eq!(of_cells(&turntable).map(|screen| cells(screen.as_ref())), Ok(turntable));
         for wrong in ["", "sideways", "-1", "1e9"] {
-            for column in 0..9 {
+            // Whatever was not turned has no degrees.
+            for column in 0..COLUMNS.len() - usize::from(wrong.is_empty()) {
                 let mut changed = expected.clone();
                 changed[column] = wrong.into();
                 assert!(of_cells(&changed).is_err(), "{} {wrong}", COLUMNS[column]);

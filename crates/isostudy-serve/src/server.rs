@@ -17,14 +17,15 @@ pub use host::{NoPublicUrl, PublicUrl};
 pub use limits::Limits;
 pub use stopping::{Judge, Rule};
 
+use crate::cameras;
 use crate::completions::Completions;
 use crate::journal::{self, Handle, Held, Journal, JournalError, Loss};
 use crate::machine::{Machine, System};
-use crate::page::{self, Media, Served, forms_js};
+use crate::page::{self, LibraryFile, Media, Served, forms_js};
 use addresses::{Budgets, Peer};
 use axum::Router;
 use axum::body::{Body, Bytes};
-use axum::extract::{Path as Matched, State};
+use axum::extract::{DefaultBodyLimit, Path as Matched, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
@@ -56,6 +57,8 @@ pub struct Settings {
     pub stimuli: PathBuf,
     /// In what files they are.
     pub media: Media,
+    /// Files that draw models, where they are shown.
+    pub library: Vec<LibraryFile>,
     /// Folder of the answers.
     pub answers: PathBuf,
     /// Where to listen.
@@ -160,6 +163,9 @@ const SESSIONS_BACK: Duration = Duration::from_secs(100);
 /// Wrong tokens at once, and in what time they come back.
 const TRIES: (u32, Duration) = (10, Duration::from_secs(5));
 
+/// Largest body of cameras: their JSON and whose they are.
+const CAMERAS_BODY: usize = cameras::LARGEST + 1000;
+
 type Site = State<Arc<Shared>>;
 
 /// Serves until the process is told to stop (interrupt or terminate), then answers what has arrived and returns. `ready` is
@@ -220,6 +226,7 @@ fn site(shared: Arc<Shared>) -> Router {
         .route("/api/sessions", post(api::begin))
         .route("/api/state", post(api::state))
         .route("/api/answers", post(api::answer))
+        .route("/api/cameras", post(api::cameras).layer(DefaultBodyLimit::max(CAMERAS_BODY)))
         .route("/api/about", post(api::about))
         .route("/api/finish", post(api::finish))
         .route("/api/withdraw", post(api::withdraw))
@@ -227,6 +234,7 @@ fn site(shared: Arc<Shared>) -> Router {
         .route("/api/admin/answers.csv", get(admin::answers))
         .route("/api/admin/identities.csv", get(admin::identities))
         .route("/api/admin/about.csv", get(admin::about))
+        .route("/api/admin/cameras.csv", get(admin::cameras))
         .route("/api/admin/shown.json", get(admin::shown))
         .layer(fixed("cache-control", "no-store"));
     let pages = Router::new()
@@ -249,9 +257,17 @@ fn file(name: &str, site: &Shared) -> Response {
         "index.html" => typed("text/html; charset=utf-8", site.index.clone()),
         "forms.js" => typed("text/javascript; charset=utf-8", site.forms_js.clone()),
         "researcher" => typed("text/html; charset=utf-8", admin::PAGE),
+        "replay" => typed("text/html; charset=utf-8", admin::REPLAY),
+        "replay.js" => typed("text/javascript; charset=utf-8", admin::REPLAY_SCRIPT),
         "researcher.js" => typed("text/javascript; charset=utf-8", admin::SCRIPT),
-        name => page_file(name),
+        name => library_file(name, site).unwrap_or_else(|| page_file(name)),
     }
+}
+
+/// What draws models, in a study that shows them.
+fn library_file(name: &str, site: &Shared) -> Option<Response> {
+    let found = site.settings.library.iter().find(|file| file.name == name)?;
+    Some(typed(found.mime, found.content.clone()))
 }
 
 fn page_file(name: &str) -> Response {

@@ -18,13 +18,14 @@ const TIME_LIMIT: Duration = Duration::from_secs(60);
 const MEMORY_LIMIT: u64 = 300 << 20;
 
 /// Arguments of files and folders that are written, and the command that has them; none for all.
-const WRITTEN: [(&str, &str); 6] = [
+const WRITTEN: [(&str, &str); 7] = [
     ("", "out"),
     ("", "picture"),
     ("", "figure"),
     ("new", "folder"),
     ("serve", "answers"),
     ("collect", "about"),
+    ("collect", "cameras"),
 ];
 /// What else has to be said for an argument to be taken.
 const BESIDE: [(&str, &str, &[&str]); 23] = [

@@ -136,7 +136,7 @@ fn video(animation: &Animation, kind: MediaFormat, quality: &str, filter: &str) 
         MediaFormat::WebM => {
             &["-c:v", "libvpx-vp9", "-b:v", "0", "-crf", quality, "-cpu-used", "3", "-row-mt", "0"]
         }
-        MediaFormat::Gif => panic!("an animation is no video"),
+        MediaFormat::Gif | MediaFormat::Model => panic!("no video"),
     };
     let path_word = path.display().to_string();
     let input = ["-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", &size, "-r", &rate, "-i", "-"];

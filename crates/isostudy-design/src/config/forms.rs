@@ -39,6 +39,23 @@ pub enum ShownNames {
     ConfigurationIds,
 }
 
+/// As what participants see the two surfaces of a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Presentation {
+    /// Animations that turn by themselves.
+    #[default]
+    Turntable,
+    /// Models that participants turn, both as one; turntables where a browser draws no models.
+    Model,
+}
+
+impl Presentation {
+    pub(crate) fn is_turntable(&self) -> bool {
+        *self == Self::Turntable
+    }
+}
+
 /// How the questions are put to people.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -83,6 +100,12 @@ pub struct FormsSection {
     /// Whole-number enlargement of the pairs by the page, nearest neighbour.
     #[serde(default = "once", deserialize_with = "whole")]
     pub page_scale: u32,
+    /// As what participants see a pair.
+    #[serde(default, skip_serializing_if = "Presentation::is_turntable")]
+    pub stimulus: Presentation,
+    /// Folder with the library that draws models, unless the viewer names it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub three: Option<String>,
     /// Most megabytes that one participant loads; `isostudy bundle` makes the pairs small enough.
     #[serde(default = "web_mb", deserialize_with = "whole", skip_serializing_if = "is_web_mb")]
     pub web_mb: u32,

@@ -2,7 +2,7 @@
 
 use super::about::AboutEntry;
 use super::{Form, Questionnaire, Role};
-use crate::config::{AboutSection, is_english_alone, is_false, languages};
+use crate::config::{AboutSection, Presentation, is_english_alone, is_false, languages};
 use crate::method::ConfigurationId;
 use crate::study::Study;
 use crate::texts::Texts;
@@ -60,6 +60,9 @@ pub struct FormFile {
     /// Whether participants may change their last answer.
     #[serde(default, skip_serializing_if = "is_false")]
     pub go_back: bool,
+    /// As what participants see a pair.
+    #[serde(default, skip_serializing_if = "Presentation::is_turntable")]
+    pub stimulus: Presentation,
     /// How long a pair takes to turn once, in milliseconds.
     pub loop_ms: u32,
     /// Whole-number enlargement of the pairs by the page, nearest neighbour.
@@ -132,6 +135,7 @@ impl Questionnaire<'_> {
             least_age: self.section.least_age,
             retention_days: self.section.retention_days,
             go_back: self.section.go_back,
+            stimulus: self.section.stimulus,
             loop_ms: self.study.file.turntable.loop_ms(),
             page_scale: self.section.page_scale,
             forms: self.planned().iter().map(entry).collect(),

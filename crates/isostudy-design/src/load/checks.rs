@@ -2,7 +2,7 @@
 
 use super::configuration;
 use crate::check::{Checker, ConfigError, short};
-use crate::config::{FormsSection, StudyFile, ThreadSweepSection};
+use crate::config::{FormsSection, Presentation, StudyFile, ThreadSweepSection};
 use crate::contrast::contrasts;
 use crate::method::is_summed;
 use crate::study::{Configuration, Study};
@@ -192,6 +192,13 @@ pub(super) fn check_forms(
     c.text("forms.instructions", &forms.instructions, "must be a text")?;
     c.count("forms.page_scale", forms.page_scale, 1, 4)?;
     c.count("forms.web_mb", forms.web_mb, 1, 100_000)?;
+    if let Some(folder) = forms.three.as_ref().filter(|folder| folder.trim().is_empty()) {
+        return c.refuse("forms.three", folder, "must name a folder");
+    }
+    if forms.stimulus == Presentation::Model && file.three().is_none() {
+        let limit = "needs forms.three, the folder where `make three` puts the library that draws models";
+        return c.refuse("forms.stimulus", "model", limit);
+    }
     if let Some(least) = forms.min_surface_px {
         c.count("forms.min_surface_px", least, 16, 4096)?;
     }

@@ -112,7 +112,7 @@ fn names_are_those_that_are_taken() {
             tried += 1;
         }
     }
-    assert_eq!(tried, 26);
+    assert_eq!(tried, 27);
 }
 
 #[test]
@@ -417,6 +417,8 @@ fn full_study() -> StudyFile {
             completion_full: Some(text()),
             per_form: Some(1),
             go_back: true,
+            stimulus: Presentation::Model,
+            three: Some("cache/three".into()),
         }),
         responses: Some(ResponsesSection {
             file: Some(text()),

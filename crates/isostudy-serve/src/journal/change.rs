@@ -36,6 +36,7 @@ impl Journal {
         self.answers.prepare_cached(change)?.execute(values)?;
         self.keep_screen(number, answer)?;
         self.keep_change(number, answer)?;
+        self.forget_track(number, answer.order)?;
         let touch = "UPDATE participants SET last_ms = ?2 WHERE number = ?1";
         self.answers.prepare_cached(touch)?.execute(params![number, now_ms])?;
         let of = &mut self.people[person];

@@ -3,6 +3,7 @@
 use super::copy::Copied;
 use super::departures::{Departure, Departures};
 use super::{JournalError, seal};
+use crate::cameras::Tracked;
 use crate::export::Given;
 use crate::machine::{Machine, Owned, System};
 use crate::record::{About, Answer, Choice, Identifiers};
@@ -30,6 +31,9 @@ const ANSWERS_SCHEMA: &str = "
         PRIMARY KEY (participant, place)) WITHOUT ROWID;
     CREATE TABLE IF NOT EXISTS changes (
         participant INTEGER NOT NULL REFERENCES participants, place INTEGER NOT NULL, number INTEGER NOT NULL,
+        PRIMARY KEY (participant, place)) WITHOUT ROWID;
+    CREATE TABLE IF NOT EXISTS cameras (
+        participant INTEGER NOT NULL REFERENCES participants, place INTEGER NOT NULL, track TEXT NOT NULL,
         PRIMARY KEY (participant, place)) WITHOUT ROWID;
     CREATE TABLE IF NOT EXISTS languages (
         participant INTEGER PRIMARY KEY REFERENCES participants, language TEXT NOT NULL);
@@ -199,6 +203,26 @@ pub(super) fn given(answers: &Connection) -> rusqlite::Result<Vec<Given>> {
     Ok(given)
 }
 
+/// From where models were looked at, in the order of [`given`].
+pub(super) fn cameras(answers: &Connection) -> rusqlite::Result<Vec<Tracked>> {
+    if !has_table(answers, "cameras")? {
+        return Ok(Vec::new());
+    }
+    let mut statement = answers.prepare(
+        "SELECT name, form, c.place, stimulus, track FROM cameras c JOIN participants ON c.participant = number
+         JOIN answers a ON a.participant = c.participant AND a.place = c.place ORDER BY c.participant, c.place",
+    )?;
+    let mut rows = statement.query([])?;
+    let mut found = Vec::new();
+    while let Some(row) = rows.next()? {
+        let Ok(track) = serde_json::from_str(&row.get::<_, String>(4)?) else { continue };
+        let form = row.get::<_, i64>(1)? as usize;
+        let (participant, order, stimulus) = (row.get(0)?, row.get(2)?, row.get(3)?);
+        found.push(Tracked { participant, form, order, stimulus, track });
+    }
+    Ok(found)
+}
+
 /// Whether a database has a table: folders of earlier versions lack some, and what only reads them makes none.
 fn has_table(database: &Connection, table: &str) -> rusqlite::Result<bool> {
     let known = "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?1";
@@ -260,6 +284,8 @@ pub struct Kept {
     pub digest: String,
     /// Every answer, participant by participant in the order in which they began to answer.
     pub given: Vec<Given>,
+    /// From where models were looked at, in the same order.
+    pub cameras: Vec<Tracked>,
     /// Answers about people, by their names.
     pub about: BTreeMap<String, About>,
     /// The languages of people, by their names.
@@ -319,8 +345,9 @@ fn read(machine: &dyn Machine, folder: &Path) -> rusqlite::Result<Found> {
     let mut connection = open(ANSWERS)?;
     // One moment of a file that a server may be writing to.
     let moment = connection.transaction()?;
-    let (given, languages, departures) = (given(&moment)?, languages(&moment)?, departures(&moment)?);
-    Ok((study(&moment)?, Kept { digest: String::new(), given, about, languages, departures }))
+    let (given, cameras) = (given(&moment)?, cameras(&moment)?);
+    let (languages, departures) = (languages(&moment)?, departures(&moment)?);
+    Ok((study(&moment)?, Kept { digest: String::new(), given, cameras, about, languages, departures }))
 }
 
 fn cannot_write(error: &rusqlite::Error) -> bool {

@@ -596,6 +596,7 @@ fn a_folder_from_before_screens_were_kept_is_read_and_written_to() {
         dropped: 2,
         hidden_ms: 70,
         shown_as: ShownAs::Gif,
+        turned_deg: None,
     };
     let folder = tempdir().unwrap();
     let mut journal = Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap();

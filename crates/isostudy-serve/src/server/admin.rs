@@ -19,6 +19,8 @@ use std::time::Instant;
 
 pub(super) const PAGE: &str = include_str!("../../page/researcher.html");
 pub(super) const SCRIPT: &str = include_str!("../../page/researcher.js");
+pub(super) const REPLAY: &str = include_str!("../../page/replay.html");
+pub(super) const REPLAY_SCRIPT: &str = include_str!("../../page/replay.js");
 
 /// Wrong tokens of a client that may wait, half a second each, before one more is refused at once.
 const AHEAD: u32 = 10;
@@ -135,6 +137,17 @@ pub(super) async fn about(
     authorised(&site, peer, &headers).await?;
     let all = site.journal.read(|journal| journal.all_about()).await?;
     Ok(csv(people::about_csv(&site.settings.file, &site.settings.attention, &all)))
+}
+
+/// `GET /api/admin/cameras.csv`: from where people looked at models.
+pub(super) async fn cameras(
+    site: Site,
+    Extension(peer): Extension<Peer>,
+    headers: HeaderMap,
+) -> Result<Response, Failure> {
+    authorised(&site, peer, &headers).await?;
+    let all = site.journal.read(|journal| journal.cameras()).await?;
+    Ok(csv(crate::cameras::csv(&all, &site.settings.key)))
 }
 
 /// `GET /api/admin/shown.json`: what was shown to whom.

@@ -2,6 +2,7 @@
 
 use super::Site;
 use super::addresses::Peer;
+use crate::cameras::Track;
 use crate::journal::{Dealt, Taken, Unsaved};
 use crate::record::{Answer, Identifiers, Refusal};
 use crate::screen::Screen;
@@ -144,6 +145,28 @@ pub(super) async fn answer(site: Site, asked: Asked<Answered>) -> Result<Json<Sa
     let answer = Answer { order, stimulus, choice, rt_ms, screen, change };
     let machine = Arc::clone(&site.machine);
     site.journal.change(move |journal| journal.answer(&token, &answer, machine.now_ms())).await??;
+    Ok(Json(Saved { saved: true }))
+}
+
+/// From where somebody looked at models before an answer.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Looked {
+    token: String,
+    order: u32,
+    #[serde(default)]
+    change: u32,
+    track: serde_json::Value,
+}
+
+/// `POST /api/cameras`: after the answer, acknowledged when it is on disk. What no page can have sent is not kept, and nobody is
+/// kept waiting for it.
+pub(super) async fn cameras(site: Site, asked: Asked<Looked>) -> Result<Json<Saved>, Failure> {
+    let Json(Looked { token, order, change, track }) = asked?;
+    let track = serde_json::from_value(track).ok().filter(Track::is_sound);
+    if let Some(track) = track {
+        site.journal.change(move |journal| journal.track(&token, order, change, &track)).await??;
+    }
     Ok(Json(Saved { saved: true }))
 }
 

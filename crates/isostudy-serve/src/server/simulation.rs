@@ -335,13 +335,14 @@ impl<'a> Simulation<'a> {
         let failed = self.machine.state().disk.failed();
         let kept = kept_on(self.machine, FOLDER.as_ref(), "trial");
         let troubled = self.machine.state().disk.failed() != failed;
-        let given = match kept {
-            Ok(kept) => kept.given,
+        let (given, cameras) = match kept {
+            Ok(kept) => (kept.given, kept.cameras),
             // Nothing was made yet.
             Err(_) if troubled || self.people.sessions.is_empty() => return Ok(()),
             Err(error) => return Err(format!("the folder cannot be read: {error}")),
         };
         self.people.check_rows("the folder", &rows_of(&given)?, served)?;
+        self.people.check_cameras("the folder", &cameras)?;
         let shared = deidentified(&given);
         let without = |given: &[Given]| {
             let mut answers: Vec<_> = given

@@ -5,13 +5,13 @@ use super::faults::fit_to_show;
 use super::study_forms::{forms, no_forms};
 use super::study_run::{Run, with_pipeline};
 use crate::outcome::Outcome;
-use crate::pipeline::Videos;
+use crate::pipeline::{Videos, library_of_models};
 use crate::terminal::say;
 use crate::{input, video};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use isostudy_design::forms::FormFile;
-use isostudy_serve::page::{Media, MediaFormat};
+use isostudy_serve::page::{LibraryFile, Media, MediaFormat};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -50,6 +50,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
 pub(super) struct Made {
     pub(super) out: PathBuf,
     pub(super) media: Media,
+    /// What draws models, in a study that shows them.
+    pub(super) library: Vec<LibraryFile>,
 }
 
 /// Makes the bundle, and says what a participant loads; `None` where faults forbid one. `wanted` is asked with the folder of results.
@@ -63,6 +65,7 @@ pub(super) fn make(
     if !fit_to_show(&study, None, with_faults)? {
         return Ok(None);
     }
+    let library = library_of_models(&study)?;
     let mut made = None;
     with_pipeline(run, |pipeline, out| {
         let forms = pipeline.forms()?.with_context(|| no_forms(&run.study))?;
@@ -73,18 +76,21 @@ pub(super) fn make(
         }
         let turntables = pipeline.turntables(&meshes, &[])?;
         let pairs = pipeline.pairs(&turntables)?;
+        let models = pipeline.models(&meshes)?;
         pipeline.contact_sheet(&meshes)?;
         if !fit_to_show(&study, Some(out), with_faults)? {
             return Ok(());
         }
         let before = videos(out, MediaFormat::Mp4)? + videos(out, MediaFormat::WebM)?;
         pipeline.finished_videos(&pairs)?;
-        let media = pipeline.bundle(&forms, &pairs, wanted(out)?)?;
-        if before > 0 && media.kinds.iter().all(|&(kind, ..)| kind == MediaFormat::Gif) {
+        let media = pipeline.bundle(&forms, &pairs, (&models, &library), wanted(out)?)?;
+        if before > 0
+            && !media.kinds.iter().any(|&(kind, ..)| [MediaFormat::Mp4, MediaFormat::WebM].contains(&kind))
+        {
             tell!("{before} videos are removed from the bundle; `isostudy bundle --mp4` makes them");
         }
         tell_load(&media, &file);
-        made = Some(Made { out: out.to_owned(), media });
+        made = Some(Made { out: out.to_owned(), media, library: library.clone() });
         Ok(())
     })?;
     Ok(made)

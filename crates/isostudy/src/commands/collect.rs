@@ -8,6 +8,7 @@ use crate::{input, store};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use clap::Args;
 use isostudy_design::forms::Questionnaire;
+use isostudy_serve::cameras::{self, Tracked};
 use isostudy_serve::download::{self, DownloadError};
 use isostudy_serve::export::{self, Given};
 use isostudy_serve::people;
@@ -28,6 +29,9 @@ pub(crate) struct Arguments {
     /// File to write what people said of themselves to, which JSON files have
     #[arg(long, value_name = "FILE")]
     about: Option<PathBuf>,
+    /// File to write to from where people looked at models that they turned, which JSON files have
+    #[arg(long, value_name = "FILE")]
+    cameras: Option<PathBuf>,
 }
 
 /// Joins the page's downloads with the key into one file that `analyse` reads.
@@ -40,6 +44,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let mut all: BTreeMap<(String, u32), Given> = BTreeMap::new();
     let mut again = 0;
     let mut about: BTreeMap<String, About> = BTreeMap::new();
+    let mut cameras: BTreeMap<(String, u32), Tracked> = BTreeMap::new();
     let downloads: Vec<Vec<PathBuf>> =
         arguments.downloads.iter().map(|path| files(path)).collect::<Result<_>>()?;
     for path in downloads.iter().flatten() {
@@ -70,6 +75,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             }
             about.insert(name, said);
         }
+        for tracked in download::read_cameras(&text).with_context(place)? {
+            cameras.insert((tracked.participant.clone(), tracked.order), tracked);
+        }
         again += download::add(&mut all, given).with_context(place)?;
     }
     let given: Vec<Given> = all.into_values().collect();
@@ -81,6 +89,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
         None if about.values().any(|said| !said.is_empty()) => {
             tell!("people said something of themselves; --about FILE writes it");
+        }
+        None => {}
+    }
+    let cameras: Vec<Tracked> = cameras.into_values().collect();
+    match &arguments.cameras {
+        Some(path) => store::write_whole(path, cameras::csv(&cameras, &key).as_bytes())?,
+        None if !cameras.is_empty() => {
+            tell!("people turned models; --cameras FILE writes from where they looked")
         }
         None => {}
     }

@@ -8,7 +8,7 @@ use crate::{input, kept_answers, store};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use isostudy_design::forms::Questionnaire;
-use isostudy_serve::{deidentify, journal, people};
+use isostudy_serve::{cameras, deidentify, journal, people};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -18,7 +18,7 @@ pub(crate) struct Arguments {
     /// Folder of the answers [default: answers/<study id>]
     #[arg(long, value_name = "DIR")]
     answers: Option<PathBuf>,
-    /// Folder to write answers.csv, codebook.md and, where people were asked about themselves, about.csv to
+    /// Folder to write answers.csv, codebook.md and, where there are any, about.csv of people and cameras.csv of models to
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
 }
@@ -49,7 +49,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         asks.then(|| people::shared_about_csv(&file, &questionnaire.attention(), &stored.about, &names));
     std::fs::create_dir_all(&arguments.out).with_context(|| arguments.out.display().to_string())?;
     let said = about.as_ref().map(|(_, said)| said.as_str());
-    let codebook = deidentify::codebook(
+    let cameras = deidentify::deidentified_cameras(&stored.cameras, &names);
+    let mut codebook = deidentify::codebook(
         &file,
         (&stored.digest, &digest),
         participants(&given),
@@ -57,7 +58,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         stored.departures,
         said,
     );
-    let mut files = vec![("answers.csv", csv(&given, &key)?), ("codebook.md", codebook)];
+    let mut files = vec![("answers.csv", csv(&given, &key)?)];
+    if !cameras.is_empty() {
+        codebook.push_str(deidentify::CAMERAS);
+        files.push(("cameras.csv", cameras::csv(&cameras, &key)));
+    }
+    files.push(("codebook.md", codebook));
     if let Some((about, said)) = about {
         tell!("about.csv: {said}");
         files.push(("about.csv", about));

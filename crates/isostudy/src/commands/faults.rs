@@ -1,7 +1,7 @@
 //! The faults of a questionnaire and of the animations that it shows. What is a fault is decided in `isostudy_design::lint`.
 
 use crate::input;
-use crate::pipeline::MadeWith;
+use crate::pipeline::{MOST_BYTES, MadeWith, models_folder};
 use crate::terminal::counted;
 use anyhow::{Context, Result};
 use isostudy_design::lint::{Fault, Rule, StimulusFacts, lint, lint_stimuli};
@@ -97,13 +97,31 @@ pub(super) fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Ve
     }
     let mut faults = lint_stimuli(study, &pairs);
     faults.extend(said_by_files(study, &results.join("stimuli/pairs"))?);
+    faults.extend(large_models(study, results)?);
     Ok(Some(faults))
+}
+
+/// Pairs whose models are larger than they may be, where they have been made.
+fn large_models(study: &Study, results: &Path) -> Result<Vec<Fault>> {
+    let mut faults = Vec::new();
+    for of in study.stimuli() {
+        let path = models_folder(results).join(format!("{}.glb", of.code));
+        if !path.is_file() {
+            continue;
+        }
+        let bytes = std::fs::metadata(&path).with_context(|| path.display().to_string())?.len();
+        if bytes > MOST_BYTES {
+            let evidence = format!("{} and {} take {:.1} MB", of.left, of.right, bytes as f64 / 1e6);
+            faults.push(Fault { rule: Rule::ModelsTooLarge, place: of.code, evidence });
+        }
+    }
+    Ok(faults)
 }
 
 /// The faults of what participants get: text in the files, and sizes that differ.
 pub(super) fn bundle_faults(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
     let mut faults = said_by_files(study, folder)?;
-    for ending in ["gif", "mp4", "webm"] {
+    for ending in ["gif", "mp4", "webm", "glb"] {
         let mut sizes = Vec::new();
         for file in input::files_of(folder, ending)? {
             let found = std::fs::metadata(&file).with_context(|| file.display().to_string())?;

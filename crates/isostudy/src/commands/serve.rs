@@ -61,7 +61,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             () => Videos::Needed,
         })
     };
-    let Some(Made { out, media }) = bundle::make(&arguments.run, wanted, arguments.with_faults)? else {
+    let Some(Made { out, media, library }) = bundle::make(&arguments.run, wanted, arguments.with_faults)?
+    else {
         return Ok(Outcome::CheckFailed);
     };
     let admin_token = match &arguments.admin_token {
@@ -85,6 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         attention: questionnaire.attention(),
         rule: stopping::rule(&study, &key),
         media,
+        library,
         stimuli: stimuli(&out),
         answers: kept_answers::folder(&study, arguments.answers.as_ref()),
         address: SocketAddr::new(arguments.address, arguments.port),

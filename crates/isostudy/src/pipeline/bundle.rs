@@ -1,5 +1,6 @@
 //! What participants get, and what the researcher keeps: the forms, the bundle, the keys, the contact sheet.
 
+use super::models::{add_chunk, shading_of_models};
 use super::web::{LEAST_PADDING, Videos, Web};
 use super::{Meshes, Pipeline};
 use crate::input;
@@ -12,7 +13,7 @@ use isostudy_design::ConfigurationId;
 use isostudy_design::forms::{FormFile, Questionnaire, Stimulus};
 use isostudy_design::record::Purpose;
 use isostudy_raster::tiny_skia::Pixmap;
-use isostudy_serve::page::{Media, MediaFormat};
+use isostudy_serve::page::{LibraryFile, Media, MediaFormat};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sha2::{Digest, Sha256};
@@ -58,11 +59,22 @@ impl Pipeline<'_> {
     }
 
     /// The folder for participants: the page, the forms and every pair, and nothing that tells what a pair shows. All files of a
-    /// kind are made the same size, since a smoother surface compresses better. Returns what a participant loads, too.
-    pub(crate) fn bundle(&self, forms: &Stamp, pairs: &[Stamp], videos: Videos) -> Result<Media> {
+    /// kind are made the same size, since a smoother surface compresses better. `models` are the pairs as models, where they are shown,
+    /// with the `library` that draws them. Returns what a participant loads, too.
+    pub(crate) fn bundle(
+        &self,
+        forms: &Stamp,
+        pairs: &[Stamp],
+        (models, library): (&[Stamp], &[LibraryFile]),
+        videos: Videos,
+    ) -> Result<Media> {
         let text = input::bytes(&self.store.root().join(forms.file("forms.json")))?;
         let file: FormFile = serde_json::from_slice(&text)?;
-        let Web { stamps: shown, kinds } = self.web(&file, pairs, videos)?;
+        let Web { stamps: mut shown, mut kinds } = self.web(&file, pairs, videos)?;
+        if !models.is_empty() {
+            shown.extend_from_slice(models);
+            kinds.insert(0, (MediaFormat::Model, self.study.file.turntable.frames));
+        }
         let ends = |file: &&FileStamp, kind: MediaFormat| file.path.ends_with(&format!(".{}", kind.ending()));
         let size = |kind: MediaFormat| {
             let of_kind = shown.iter().flat_map(|stamp| &stamp.files).filter(|file| ends(file, kind));
@@ -73,6 +85,7 @@ impl Pipeline<'_> {
         let media = Media {
             kinds: kinds.iter().map(|&(kind, frames)| (kind, size(kind) as u64, frames)).collect(),
             surface: [turntable.width, turntable.height].map(|pixels| pixels * scale),
+            shading: shading_of_models(self.study),
         };
         let step = Step::begin("bundle", 1, shown.len());
         let seed = self.study.file.study.seed;
@@ -82,6 +95,12 @@ impl Pipeline<'_> {
             .stamp(forms);
         for stamp in &shown {
             inputs = inputs.stamp(stamp);
+        }
+        if let Some(shading) = &media.shading {
+            inputs = inputs.value("shading", shading);
+        }
+        for LibraryFile { name, content, .. } in library {
+            inputs = inputs.text(name, &sha256(content.as_bytes()));
         }
         let stamp = self.stage(BUNDLE, inputs, |writer| {
             let root = self.store.root();
@@ -109,6 +128,12 @@ impl Pipeline<'_> {
                         bytes.extend((length | 1 << 56).to_be_bytes());
                     }
                     MediaFormat::Gif => {}
+                    MediaFormat::Model => {
+                        // A chunk that no reader knows, with its length and its type in eight bytes.
+                        let mut noise = Vec::new();
+                        pad(&mut noise, size - bytes.len() - 8, seed, &file.path);
+                        add_chunk(&mut bytes, *b"FREE", &noise)?;
+                    }
                 }
                 pad(&mut bytes, size, seed, &file.path);
                 writer.write(&format!("{BUNDLE}/stimuli/{name}"), &bytes)?;
@@ -119,6 +144,9 @@ impl Pipeline<'_> {
             writer.write(&format!("{BUNDLE}/forms.js"), script.as_bytes())?;
             let index = isostudy_serve::page::index(&file);
             writer.write(&format!("{BUNDLE}/index.html"), index.as_bytes())?;
+            for LibraryFile { name, content, .. } in library {
+                writer.write(&format!("{BUNDLE}/{name}"), content.as_bytes())?;
+            }
             for (name, _, content) in isostudy_serve::page::FILES {
                 writer.write(&format!("{BUNDLE}/{name}"), content.as_bytes())?;
             }

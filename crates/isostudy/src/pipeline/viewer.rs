@@ -17,6 +17,7 @@ use flate2::write::GzEncoder;
 use isostudy_design::Study;
 use isostudy_design::config::ViewerSection;
 use library::Library;
+pub(super) use library::beside_a_page;
 use rayon::prelude::*;
 use std::io::Write;
 

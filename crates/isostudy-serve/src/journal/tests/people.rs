@@ -1,6 +1,7 @@
 //! What people say of themselves, how many the study takes, and what is left of those who leave.
 
 use super::*;
+use crate::cameras::Track;
 use isostudy_design::config::AboutTime;
 use isostudy_design::forms::{AboutEntry, Answers, Quotas};
 
@@ -160,6 +161,46 @@ fn the_last_answer_may_be_changed_and_nothing_late_undoes_it() {
     assert_eq!(journal.answer(&dealt.token, &change, 2).unwrap(), Err(Refusal::Answered(2)));
 }
 
+/// Two cameras, the second of which at a time.
+fn turned(t_ms: i32) -> Track {
+    Track { hz: 20.0, cameras: vec![0, 450, 222, 1000, t_ms, 525, 222, 1000] }
+}
+
+/// Cameras belong to one answer: there is none before it, and none of an older one after it was changed.
+#[test]
+fn cameras_stand_beside_the_answer_that_they_belong_to() {
+    let folder = tempdir().unwrap();
+    let asked = FormFile { go_back: true, ..asking(1) };
+    let mut journal = open(folder.path(), &asked);
+    let dealt = journal.begin(nobody(), 1).unwrap();
+    let unknown = journal.track("nobody", 2, 0, &turned(1)).unwrap();
+    assert_eq!(unknown, Err(Refusal::UnknownToken));
+    let early = Err(Refusal::OutOfOrder { given: 2, next: 2 });
+    assert_eq!(journal.track(&dealt.token, 2, 0, &turned(1)).unwrap(), early);
+    first_answer(&mut journal, &dealt, 1);
+    assert_eq!(journal.track(&dealt.token, 1, 0, &turned(1)).unwrap(), Err(Refusal::UnknownPlace(1)));
+    let early = Err(Refusal::OutOfOrder { given: 3, next: 3 });
+    assert_eq!(journal.track(&dealt.token, 3, 0, &turned(1)).unwrap(), early);
+    for _ in 0..2 {
+        assert_eq!(journal.track(&dealt.token, 2, 0, &turned(700)).unwrap(), Ok(()));
+    }
+    let kept = |journal: &Journal| journal.cameras().unwrap();
+    let of = kept(&journal);
+    assert_eq!((of.len(), of[0].order, of[0].track.clone()), (1, 2, turned(700)));
+    assert_eq!((of[0].participant.clone(), of[0].form), (dealt.participant.clone(), dealt.form.form));
+    drop(journal);
+    let mut journal = open(folder.path(), &asked);
+    assert_eq!(kept(&journal), of);
+    // Whoever goes back and answers otherwise looks again; what comes late is of the older answer.
+    let change = Answer { change: 1, ..answer(2, &dealt.form.questions[0], Choice::Np) };
+    assert_eq!(journal.answer(&dealt.token, &change, 2).unwrap(), Ok(()));
+    assert_eq!(kept(&journal), []);
+    assert_eq!(journal.track(&dealt.token, 2, 0, &turned(700)).unwrap(), Ok(()));
+    assert_eq!(kept(&journal), []);
+    assert_eq!(journal.track(&dealt.token, 2, 1, &turned(900)).unwrap(), Ok(()));
+    assert_eq!(kept(&journal)[0].track, turned(900));
+}
+
 fn holds(bytes: &[u8], text: &str) -> bool {
     bytes.windows(text.len()).any(|window| window == text.as_bytes())
 }
@@ -186,6 +227,7 @@ fn of_who_withdraws_nothing_is_left_in_any_file() {
         dropped: 0,
         hidden_ms: 0,
         shown_as: crate::screen::ShownAs::Gif,
+        turned_deg: None,
     };
     let come = |session: &'static str, age: &'static str, width: u32| {
         let work = handle.change(move |journal| {
@@ -196,6 +238,7 @@ fn of_who_withdraws_nothing_is_left_in_any_file() {
                 journal
                     .answer(&dealt.token, &Answer { screen, ..answer(order, stimulus, Choice::R) }, 2)?
                     .unwrap();
+                journal.track(&dealt.token, order, 0, &turned(27_000_000 + width as i32))?.unwrap();
             }
             journal.about(&dealt.token, "age", age, 1)?.unwrap();
             Ok(dealt)
@@ -205,7 +248,8 @@ fn of_who_withdraws_nothing_is_left_in_any_file() {
     let others: Vec<Dealt> = ["a", "b", "c"].map(|session| come(session, "44", 1000)).into();
     let gone = come("session-of-who-left", "31.41592", 31_415);
     let more: Vec<Dealt> = ["d", "e"].map(|session| come(session, "45", 1000)).into();
-    let traces = [gone.participant.as_str(), &gone.token, "session-of-who-left", "31.41592", "31415"];
+    let traces =
+        [gone.participant.as_str(), &gone.token, "session-of-who-left", "31.41592", "31415", "27031415"];
     for trace in traces {
         assert!(!is_left(folder.path(), trace).is_empty(), "{trace} was there");
     }
@@ -237,9 +281,11 @@ fn of_who_withdraws_nothing_is_left_in_any_file() {
             journal.all_about()?,
             journal.languages()?,
             journal.departures()?,
+            journal.cameras()?,
         ))
     }));
-    let (given, identities, about, languages, departures) = exports.unwrap();
+    let (given, identities, about, languages, departures, cameras) = exports.unwrap();
+    assert_eq!(cameras.len(), 15);
     assert_eq!((given.len(), identities.len(), about.len(), languages.len()), (15, 5, 5, 5));
     assert!(given.iter().all(|one| one.participant != gone.participant));
     assert_eq!(departures.withdrawn, 1);

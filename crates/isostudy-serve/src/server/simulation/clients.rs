@@ -100,6 +100,17 @@ impl Simulation<'_> {
             (Asked::Answer { place, .. }, 200) if *place == client.next => {
                 client.next += 1;
                 client.said = None;
+                // Somebody who turned models tells it after the answer, and perhaps once more.
+                if self.chance.percent(40) {
+                    let token = client.token.clone().expect("it asked with it");
+                    let (place, t_ms) = (*place, 50 + self.chance.below(9000) as i32);
+                    self.people.look(&token, place, t_ms);
+                    let looked = Asked::Cameras { token, place, t_ms };
+                    if self.chance.percent(20) {
+                        self.network.push((number, looked.clone()));
+                    }
+                    self.network.push((number, looked));
+                }
             }
             (Asked::Finish { .. }, 200) => client.done = true,
             (_, 404) => *client = Client::of(client.panel),
@@ -120,6 +131,10 @@ pub(super) fn body(people: &People, asked: &Asked) -> String {
             json!({"prolific_pid": "5f9", "study_id": "61a", "session_id": panel_session(*panel)})
         }
         Asked::State { token } | Asked::Finish { token } => json!({ "token": token }),
+        Asked::Cameras { token, place, t_ms } => {
+            let track = json!({"hz": 20, "cameras": [0, 450, 222, 1000, t_ms, 525, 222, 1000]});
+            json!({"token": token, "order": place + TRAINING + 1, "track": track})
+        }
         Asked::Answer { token, place, said } => {
             let stimulus = &people.sessions[token].questions[*place];
             let screen = said.width.map(|width| {
@@ -143,6 +158,7 @@ pub(super) fn path(asked: &Asked) -> &'static str {
         Asked::Begin { .. } => "/api/sessions",
         Asked::State { .. } => "/api/state",
         Asked::Answer { .. } => "/api/answers",
+        Asked::Cameras { .. } => "/api/cameras",
         Asked::Finish { .. } => "/api/finish",
     }
 }

@@ -1,6 +1,7 @@
 //! What clients know and were told, and what every export must therefore hold.
 
 use super::running::Reply;
+use crate::cameras::Tracked;
 use crate::export::Given;
 use crate::record::Choice;
 use serde_json::Value;
@@ -35,6 +36,8 @@ pub(super) struct Session {
     panel: Option<usize>,
     sent: Vec<Vec<Said>>,
     certain: Vec<Certain>,
+    /// Times of the cameras that were sent to a place, and whether one of them was acknowledged.
+    looked: Vec<(Vec<i32>, bool)>,
     finished: bool,
     /// In which life of the server it was dealt.
     life: u64,
@@ -63,6 +66,7 @@ pub(super) enum Asked {
     Begin { panel: Option<usize> },
     State { token: String },
     Answer { token: String, place: usize, said: Said },
+    Cameras { token: String, place: usize, t_ms: i32 },
     Finish { token: String },
 }
 
@@ -73,7 +77,10 @@ impl Asked {
     pub(super) fn token(&self) -> Option<&str> {
         match self {
             Self::Begin { .. } => None,
-            Self::State { token } | Self::Answer { token, .. } | Self::Finish { token } => Some(token),
+            Self::State { token }
+            | Self::Answer { token, .. }
+            | Self::Cameras { token, .. }
+            | Self::Finish { token } => Some(token),
         }
     }
 }
@@ -111,6 +118,11 @@ impl People {
         if !sent.contains(&said) {
             sent.push(said);
         }
+    }
+
+    /// Somebody sends cameras of an answer that was acknowledged.
+    pub(super) fn look(&mut self, token: &str, place: usize, t_ms: i32) {
+        self.sessions.get_mut(token).expect("somebody").looked[place].0.push(t_ms);
     }
 
     /// Learns from a reply. `before` answers were certain when the request was sent.
@@ -163,6 +175,10 @@ impl People {
                 }
             }
             (Asked::Answer { place, .. }, 409) if before < *place => Ok(()),
+            (Asked::Cameras { place, .. }, 200) => {
+                session.looked[*place].1 = true;
+                Ok(())
+            }
             (Asked::Finish { .. }, 200) => {
                 session.at_least(all);
                 session.finished = true;
@@ -182,6 +198,7 @@ impl People {
             form: said["form"]["form"].as_u64().unwrap_or(0) as usize,
             sent: vec![Vec::new(); questions.len()],
             certain: vec![Certain::Nothing; questions.len()],
+            looked: vec![(Vec::new(), false); questions.len()],
             questions,
             panel,
             finished: false,
@@ -239,6 +256,28 @@ impl People {
             }
         }
         if names.is_empty() { Ok(()) } else { Err(format!("{what}: answers of nobody: {names:?}")) }
+    }
+
+    /// Holds cameras against what was told: those of an answer are all there or none, and what was acknowledged is there.
+    pub(super) fn check_cameras(&self, what: &str, kept: &[Tracked]) -> Result<(), String> {
+        let mut found = BTreeMap::new();
+        for of in kept {
+            let [.., t_ms, _, _, _] = of.track.cameras[..] else { return Err(format!("{what}: {of:?}")) };
+            found.insert((of.participant.as_str(), of.order as usize), t_ms);
+        }
+        for session in self.sessions.values() {
+            for (place, (sent, is_certain)) in session.looked.iter().enumerate() {
+                let known = found.remove(&(session.name.as_str(), place + TRAINING + 1));
+                if known.map_or(*is_certain, |t_ms| !sent.contains(&t_ms)) {
+                    let place = place + TRAINING + 1;
+                    return Err(format!(
+                        "{what}: participant {}, place {place}: cameras {known:?}",
+                        session.name
+                    ));
+                }
+            }
+        }
+        if found.is_empty() { Ok(()) } else { Err(format!("{what}: cameras of nobody: {found:?}")) }
     }
 
     /// Holds the panel's identifiers against those who have answered; `exact` where nobody else's may be there.

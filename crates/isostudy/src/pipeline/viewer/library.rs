@@ -3,6 +3,7 @@
 use crate::input;
 use crate::store::{Inputs, sha256};
 use anyhow::{Result, bail};
+use isostudy_serve::page::LibraryFile;
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -59,10 +60,7 @@ impl Library {
             let Some(mut text) = read(&folder.join(file))? else { return Ok(None) };
             for (path, by_name) in imports {
                 if !text.contains(path) {
-                    bail!(
-                        "{} does not import {path}: it is no file of the version that `make three` fetches",
-                        folder.join(file).display()
-                    );
+                    bail!("{}", other_version(&folder.join(file), path));
                 }
                 text = text.replace(path, by_name);
             }
@@ -80,6 +78,36 @@ impl Library {
             .fold(inputs, |inputs, module| inputs.text(module.name, &sha256(module.text.as_bytes())))
             .finish()
     }
+}
+
+/// The files with which a page that a server gives draws: modules that find each other by their paths, and the licence. `None` if a
+/// file is missing.
+///
+/// # Errors
+/// If a file cannot be read, or is of another version.
+pub(in crate::pipeline) fn beside_a_page(folder: &Path) -> Result<Option<Vec<LibraryFile>>> {
+    const SCRIPT: &str = "text/javascript; charset=utf-8";
+    let [(core, ..), (module, _, imports), ..] = SOURCES;
+    let mut files = Vec::new();
+    for (file, name, mime) in [
+        (core, core, SCRIPT),
+        (module, module, SCRIPT),
+        (LICENCE, "three-licence.txt", "text/plain; charset=utf-8"),
+    ] {
+        let Some(content) = read(&folder.join(file))? else { return Ok(None) };
+        if let Some((path, _)) = imports.iter().find(|(path, _)| file == module && !content.contains(path)) {
+            bail!("{}", other_version(&folder.join(file), path));
+        }
+        files.push(LibraryFile { name, mime, content });
+    }
+    Ok(Some(files))
+}
+
+fn other_version(file: &Path, path: &str) -> String {
+    format!(
+        "{} does not import {path}: it is no file of the version that `make three` fetches",
+        file.display()
+    )
 }
 
 /// A text; `None` if there is no such file.
