@@ -20,7 +20,7 @@ use crate::prediction::Prediction;
 use crate::recorded::Recorded;
 use crate::scale::{GroupScale, scales};
 use crate::screened::{self, Respondent, WithoutBreakers};
-use crate::screens::{self, Compared};
+use crate::screens::{self, Compared, Turned};
 use crate::sides::Sides;
 use crate::tipping::Undone;
 use conclusions::{Conclusion, Conclusions};
@@ -148,6 +148,8 @@ pub struct Preferences<'a> {
     pub audit: Vec<audit::Report>,
     /// Answers by the screen that they were given on.
     pub screens: Vec<Compared>,
+    /// How far people turned models, where they were shown any.
+    pub turned: Option<Turned>,
     /// Whether worths go with what is known of people; none where the study names no column of them.
     pub attributed: Vec<Attributed<'a>>,
     /// What was found.
@@ -299,6 +301,7 @@ impl<'a> Base<'a> {
             contrasts: glance::rows(study, &hypotheses),
             omnibus: study.map_or_else(Vec::new, |study| omnibus::tests(study, &declared)),
             screens: screens::compared(responses),
+            turned: screens::turned(responses),
             attributed: attributed(study, responses, groups),
             study,
             responses,

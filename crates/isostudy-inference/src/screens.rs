@@ -8,7 +8,7 @@
 
 use isostudy_responses::{Answer, Choice, Responses, Screen};
 use isostudy_statistics::{Split, exchange, holm};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Something that screens differ in.
 #[derive(Debug, Clone, Copy)]
@@ -30,8 +30,11 @@ const SMALL_PX: f32 = 300.0;
 /// Screens of phones and of newer laptops have this many pixels for one of CSS.
 const DENSE: f32 = 2.0;
 
+/// Name of the condition that only studies with models have.
+const MODELS: &str = "models";
+
 /// All that are recorded.
-pub const CONDITIONS: [Condition; 8] = [
+pub const CONDITIONS: [Condition; 10] = [
     Condition {
         name: "window",
         parts: ["narrower than 600 px", "wider"],
@@ -66,7 +69,16 @@ pub const CONDITIONS: [Condition; 8] = [
         name: "shown as",
         parts: ["video", "animation"],
         of_person: true,
-        first: |screen| Some(screen.shown_as? != "gif"),
+        first: |screen| match screen.shown_as? {
+            "model" => None,
+            kind => Some(kind != "gif"),
+        },
+    },
+    Condition {
+        name: MODELS,
+        parts: ["models", "animation or video"],
+        of_person: true,
+        first: |screen| Some(screen.shown_as? == "model"),
     },
     Condition {
         name: "dropped frames",
@@ -80,7 +92,53 @@ pub const CONDITIONS: [Condition; 8] = [
         of_person: false,
         first: |screen| Some(screen.hidden_ms? > 0.0),
     },
+    Condition {
+        name: "turning",
+        parts: ["models turned", "not turned"],
+        of_person: false,
+        first: |screen| Some(screen.turned_deg? > 0.0),
+    },
 ];
+
+/// How far people turned models, over the answers to comparisons.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turned {
+    /// People who were shown models.
+    pub people: usize,
+    /// Their answers.
+    pub answers: usize,
+    /// Those of them before which the models were turned.
+    pub turned: usize,
+    /// Lower quartile, median and upper quartile of the degrees of those that were turned, there and back; `None` of none.
+    pub quartiles_deg: Option<[f64; 3]>,
+}
+
+/// How far people turned models; `None` where nobody was shown any.
+pub fn turned(answers: &Responses) -> Option<Turned> {
+    let asked = |answer: &&Answer| answers.questions[answer.question as usize].is_comparison();
+    let degrees =
+        |answer: &Answer| Some((answer.participant, f64::from(answers.screen(answer)?.turned_deg?)));
+    let shown: Vec<(u32, f64)> = answers.answers.iter().filter(asked).filter_map(degrees).collect();
+    if shown.is_empty() {
+        return None;
+    }
+    let people: BTreeSet<u32> = shown.iter().map(|(person, _)| *person).collect();
+    let mut far: Vec<f64> =
+        shown.iter().map(|(_, degrees)| *degrees).filter(|degrees| *degrees > 0.0).collect();
+    far.sort_by(f64::total_cmp);
+    let quartile = |quarter: usize| {
+        // Between the two nearest in the order, in proportion: the seventh definition of Hyndman and Fan (1996).
+        let (place, rest) = ((far.len() - 1) * quarter / 4, (far.len() - 1) * quarter % 4);
+        let next = far[(place + 1).min(far.len() - 1)];
+        far[place] + (next - far[place]) * rest as f64 / 4.0
+    };
+    Some(Turned {
+        people: people.len(),
+        answers: shown.len(),
+        turned: far.len(),
+        quartiles_deg: (!far.is_empty()).then(|| [1, 2, 3].map(quartile)),
+    })
+}
 
 /// What is compared between the parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -147,6 +205,8 @@ pub fn compared(answers: &Responses) -> Vec<Compared> {
         .iter()
         .flat_map(|condition| Measure::ALL.map(|measure| compare(&judged, *condition, measure)))
         .filter(|of| of.answers.iter().sum::<usize>() > 0)
+        // Of a study without models there is nothing to say about them.
+        .filter(|of| of.condition.name != MODELS || of.answers[0] > 0)
         .collect();
     let p: Vec<f64> = found.iter().filter_map(|of| of.p).collect();
     let mut adjusted = holm(&p).into_iter();
@@ -263,6 +323,8 @@ fn within(people: &[[Vec<i64>; 2]]) -> Vec<Split> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand_pcg::Pcg64;
+    use rand_pcg::rand_core::{Rng, SeedableRng};
 
     const LONG: &str = "participant,question,left,right,choice,viewport_width,pixel_ratio,dropped,input";
 
@@ -328,6 +390,63 @@ mod tests {
         };
         assert_eq!(of(&[390, 390, 1280]), ([0, 1], Some(([1, 0], [3, 0]))));
         assert_eq!(of(&[390, 1280]), ([0, 1], None));
+    }
+
+    /// Forty people answer twelve questions, and turn the models before half of the answers. `sees` is the chance to choose
+    /// the better side, after turning and without.
+    fn of_turners(seed: u64, sees: [f64; 2]) -> Vec<Compared> {
+        let mut chance = Pcg64::seed_from_u64(seed);
+        let mut below = |share: f64| ((chance.next_u64() >> 11) as f64) < share * (1u64 << 53) as f64;
+        let mut text = "participant,question,left,right,choice,shown_as,turned_deg\n".to_owned();
+        for (person, question) in (0..40).flat_map(|person| (0..12).map(move |question| (person, question))) {
+            let is_turned = below(0.5);
+            let choice = if below(sees[usize::from(!is_turned)]) { "left" } else { "right" };
+            let degrees = if is_turned { 120 + person } else { 0 };
+            text.push_str(&format!("p{person},q{question},a,b,{choice},model,{degrees}\n"));
+        }
+        let path = std::path::Path::new("answers.csv");
+        let read =
+            isostudy_responses::parse(text.as_bytes(), path, None, &isostudy_responses::Mapping::default());
+        compared(&read.unwrap().responses)
+    }
+
+    #[test]
+    fn turning_that_changes_the_choice_comes_out_and_turning_that_does_not_rarely_does() {
+        let p = |found: &[Compared]| find(found, "turning", Measure::Agreement).p.unwrap();
+        // Who turns sees the difference in nine of ten, who does not guesses.
+        for seed in 0..20 {
+            let found = of_turners(seed, [0.9, 0.5]);
+            let agreement = find(&found, "turning", Measure::Agreement);
+            assert!(
+                agreement.p.unwrap() < 1e-6 && agreement.shares[0] > agreement.shares[1],
+                "{agreement:?}"
+            );
+            assert_eq!(agreement.people, [40, 40]);
+        }
+        // Turning changes nothing: an exact test at 0.05 errs in no more than 5 of 100, here of 200, with three standard errors.
+        let wrong = (0..200).filter(|seed| p(&of_turners(1000 + seed, [0.7, 0.7])) <= 0.05).count();
+        assert!(wrong <= 10 + 9, "{wrong} of 200");
+        assert!(wrong > 0, "a test that never errs finds nothing");
+    }
+
+    #[test]
+    fn how_far_people_turned_is_of_those_who_turned() {
+        let text = "participant,question,left,right,choice,shown_as,turned_deg\np,q1,a,b,left,model,90\n\
+                    p,q2,a,b,left,model,0\np,q3,a,b,left,gif,\nr,q1,a,b,left,model,30\nr,q2,a,b,left,model,60\n";
+        let path = std::path::Path::new("answers.csv");
+        let read =
+            isostudy_responses::parse(text.as_bytes(), path, None, &isostudy_responses::Mapping::default());
+        let responses = read.unwrap().responses;
+        let expected = Turned { people: 2, answers: 4, turned: 3, quartiles_deg: Some([45.0, 60.0, 75.0]) };
+        assert_eq!(turned(&responses), Some(expected));
+        // A person is of the kind of most answers: the one animation goes with the person's models.
+        let found = compared(&responses);
+        assert!(found.iter().any(|of| of.condition.name == "models" && of.answers == [5, 0]));
+        assert!(turned(&read_none()).is_none());
+    }
+
+    fn read_none() -> Responses {
+        read(&["p,q,a,b,left,1280,1,0,mouse".into()])
     }
 
     #[test]

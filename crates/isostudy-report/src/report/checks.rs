@@ -27,6 +27,7 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
     found.extend(without.map(|of| without_breakers(evidence, of)));
     found.extend(preferences.audit.iter().map(|report| probed(preferences, report)));
     found.extend(screens::finding(&preferences.screens, evidence.rules().level));
+    found.extend(preferences.turned.as_ref().map(screens::turning));
     found.into_iter().map(Block::Finding).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use crate::statement::{Finding, Standing};
 use crate::words::{counted, list, p as p_value};
-use isostudy_inference::screens::Compared;
+use isostudy_inference::screens::{Compared, Turned};
 
 /// `level` is that of tests, after correction.
 pub(super) fn finding(compared: &[Compared], level: f64) -> Option<Finding> {
@@ -55,6 +55,20 @@ pub(super) fn finding(compared: &[Compared], level: f64) -> Option<Finding> {
     Some(Finding::new(Standing::Noted, said))
 }
 
+/// How far people turned the models that they were shown. Whether it changed what they chose is a row of the table.
+pub(super) fn turning(turned: &Turned) -> Finding {
+    let Turned { people, answers, turned, quartiles_deg } = turned;
+    let (people, answers) = (counted(*people, "participant"), counted(*answers, "answer"));
+    let before = format!("Models were shown to {people}, who turned them before {turned} of {answers}");
+    let said = match quartiles_deg {
+        None => format!("{before}."),
+        Some([low, median, high]) => {
+            format!("{before}, by a median of {median:.0} degrees (quartiles {low:.0} and {high:.0}).")
+        }
+    };
+    Finding::new(Standing::Noted, said)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,6 +89,21 @@ mod tests {
             isostudy_responses::parse(text.as_bytes(), path, None, &isostudy_responses::Mapping::default())
                 .unwrap();
         finding(&compared(&read.responses), 0.05).unwrap().text
+    }
+
+    #[test]
+    fn how_far_people_turned_is_said() {
+        let of =
+            |turned, quartiles_deg| turning(&Turned { people: 2, answers: 4, turned, quartiles_deg }).text;
+        assert_eq!(
+            of(3, Some([45.0, 60.0, 75.0])),
+            "Models were shown to 2 participants, who turned them before 3 of 4 answers, by a median of 60 degrees (quartiles \
+             45 and 75)."
+        );
+        assert_eq!(
+            of(0, None),
+            "Models were shown to 2 participants, who turned them before 0 of 4 answers."
+        );
     }
 
     #[test]

@@ -24,7 +24,8 @@ pub(crate) fn screens(compared: &[Compared]) -> Table {
         "Answers to comparisons, everybody's. Widths are in CSS pixels; a surface's is the largest that it had. p: exact, \
          two-sided, the person as the unit. Devices: people above the median of all people's shares less people below it, \
          among all divisions of the people into two parts of these sizes; who changed devices is of the one with most \
-         answers. Dropped frames and time out of sight: all draws of as many of each person's own answers. p adjusted: Holm, \
-         over the tests of this table. As most others: the answer is the one that others gave more often to the question.",
+         answers. Dropped frames, time out of sight and turning: all draws of as many of each person's own answers. Turning: \
+         whether models were turned before the answer, which people chose to do. p adjusted: Holm, over the tests of this \
+         table. As most others: the answer is the one that others gave more often to the question.",
     )
 }
