@@ -25,6 +25,7 @@ mod left_out;
 mod many;
 mod memory;
 mod messages;
+mod models;
 mod named;
 mod page;
 mod parts;

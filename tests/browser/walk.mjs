@@ -41,9 +41,9 @@ export function run(...words) {
 }
 
 /** A server of a bundled study, its answers in a folder of that name; on a free port if none is said. */
-export async function serve({ config, out }, name, port = '0') {
+export async function serve({ config, out, words = [] }, name, port = '0') {
   const answers = path.join(folder, name);
-  const child = spawn(ISOSTUDY, ['serve', config, '--out', out, '--answers', answers, '--port', port, '--admin-token', TOKEN], { stdio: ['ignore', 'ignore', 'pipe'] });
+  const child = spawn(ISOSTUDY, ['serve', config, '--out', out, '--answers', answers, '--port', port, '--admin-token', TOKEN, ...words], { stdio: ['ignore', 'ignore', 'pipe'] });
   children.add(child);
   let said = '';
   const address = await new Promise((resolve, reject) => {
@@ -68,15 +68,15 @@ export async function serve({ config, out }, name, port = '0') {
   };
 }
 
-/** The small study of two methods, changed, and bundled under this name. Its animations are small and quick. */
-export function questionnaire(name, change = (text) => text) {
-  const study = { config: path.join(folder, `${name}.toml`), out: path.join(folder, `${name}-results`) };
+/** The small study of two methods, changed, and bundled under this name with more words. Its animations are small and quick. */
+export function questionnaire(name, change = (text) => text, ...words) {
+  const study = { config: path.join(folder, `${name}.toml`), out: path.join(folder, `${name}-results`), words };
   const text = fs.readFileSync(path.join(root, 'configs/two-methods.toml'), 'utf8')
     .replace('width = 320', 'width = 128').replace('height = 320', 'height = 128').replace('frames = 72', 'frames = 4')
     .replace('duration_s = 5.76', 'duration_s = 0.4').replaceAll('stimulus_spacing = 0.08', 'stimulus_spacing = 0.2')
     .replace('"cpu/', `"${root}/configs/cpu/`).replace('max_questions = 6', 'max_questions = 6\npage_scale = 4\ncompletion = "C0DE-42"');
   fs.writeFileSync(study.config, change(text));
-  run('bundle', study.config, '--out', study.out);
+  run('bundle', study.config, '--out', study.out, ...words);
   return { ...study, serve: (...words) => serve(study, ...words) };
 }
 
