@@ -76,8 +76,9 @@ window.isostudyKiosk = ({ text, make, heading, post, key, leave }) => {
   /** Sends one session's answers. */
   async function sendOne({ token, answers, all }) {
     for (const one of answers.filter((answer) => !answer.saved)) {
-      const { saved, answered, ...answer } = one;
+      const { saved, answered, track, ...answer } = one;
       await post('api/answers', { token, ...answer });
+      if (track) await post('api/cameras', { token, order: answer.order, change: answer.change, track });
       one.saved = true;
       store();
     }
