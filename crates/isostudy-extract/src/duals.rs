@@ -42,8 +42,10 @@ use crate::cubes::records::Records;
 use crate::cubes::sampling::{Samples, Sampling};
 use crate::cubes::vertices::Placer;
 use crate::extraction::ExtractError;
+use crate::lattice::Part;
 use crate::sampling::level::Level;
 use crate::slabs::{Pass, Run, Slab, Stage, Streamed};
+use crate::source::{NormalsOf, Request};
 use crate::surface::trace::Trace;
 
 /// What decides a net.
@@ -82,9 +84,10 @@ pub(crate) fn extract(
     if smoothing == 0 && sharp_and_merged.is_none() && !are_squares_merged {
         return extract_unmoved(buffers, nets, run);
     }
-    // The trace says which cell a vertex is of.
+    // The trace says which cell a vertex is of. What is done afterwards needs all triangles.
     let mut own = Trace::default();
     let Run { request, progress, trace, extraction } = run;
+    let request = &Request { part: None, normals: NormalsOf::Triangles, ..*request };
     let trace = trace.unwrap_or(&mut own);
     let run = Run { request, progress, trace: Some(&mut *trace), extraction: &mut *extraction };
     extract_unmoved(buffers, nets, run)?;
@@ -113,7 +116,15 @@ fn extract_unmoved(
     let (source, isovalue) = (request.source, request.settings.isovalue);
     let sampling = Sampling { grid: &grid, source, isovalue, all_corners: false };
     kept.stream(
-        &Net { sampling, table, by_planes, placer, in_middle: blocks.is_some() },
+        &Net {
+            sampling,
+            table,
+            by_planes,
+            placer,
+            in_middle: blocks.is_some(),
+            part: request.part,
+            has_normals: request.normals == NormalsOf::Samples,
+        },
         1,
         workspaces,
         run,
@@ -130,6 +141,10 @@ struct Net<'a> {
     placer: Placer<'a>,
     /// Whether vertices are in the middle of their cells.
     in_middle: bool,
+    /// The points whose edges have quadrilaterals, where not all have.
+    part: Option<Part>,
+    /// Whether vertices have normals by samples.
+    has_normals: bool,
 }
 
 /// Buffers of one thread.
@@ -154,6 +169,10 @@ impl Streamed for Net<'_> {
         workspace.records.fit(grid)
     }
 
+    fn part(&self) -> Option<Part> {
+        self.part
+    }
+
     /// The quadrilaterals are those of the edges that begin at the lower points of the layers. Those lead to cells one layer down,
     /// which are the slab's below.
     fn passes(&self, own: Range<usize>) -> impl AsRef<[Pass<Self>]> {
@@ -174,6 +193,9 @@ impl Streamed for Net<'_> {
         // Those of the slab below were needed for diagonals alone.
         let below = slab.piece.below as usize;
         slab.vertices.positions.drain(..below);
+        if self.has_normals {
+            slab.vertices.normals.drain(..below);
+        }
         if let Some(keys) = &mut slab.vertices.keys {
             keys.drain(..below);
         }
@@ -199,7 +221,10 @@ impl Net<'_> {
         let Self { sampling: Sampling { grid, source, .. }, by_planes, ref placer, in_middle, .. } = *self;
         let Workspace { samples, records, plans, tangents } = &mut *slab.workspace;
         let plans = plans.as_mut().expect("there is room for it");
-        let pass = VertexPass { grid, samples, values: samples.values(grid, source), placer, in_middle };
+        let part = self.part.unwrap_or_else(|| Part::whole(grid.lattice));
+        let values = samples.values(grid, source);
+        let pass =
+            VertexPass { grid, samples, values, placer, in_middle, part, has_normals: self.has_normals };
         if layer == lowest_numbered(&slab.own) {
             tangents.iter_mut().for_each(HashMap::clear);
         }
@@ -217,7 +242,9 @@ impl Net<'_> {
         let (grid, level) = (self.sampling.grid, self.by_planes.map(|(_, level)| level));
         let Workspace { samples, records, plans, .. } = &*slab.workspace;
         let plans = plans.as_ref().expect("there is room for it");
-        let pass = QuadPass { grid, samples, plans, records, positions: &slab.vertices.positions, level };
+        let part = self.part.unwrap_or_else(|| Part::whole(grid.lattice));
+        let pass =
+            QuadPass { grid, samples, plans, records, positions: &slab.vertices.positions, level, part };
         let mut crossings = pass.layer(layer, &mut slab.piece.surface)?;
         if layer == slab.own.start {
             // Only the lowest points have quadrilaterals with vertices of the slab below.

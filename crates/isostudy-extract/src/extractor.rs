@@ -9,12 +9,12 @@ use isostudy_field::{FieldCache, Plain, StudyField, Watched};
 use crate::clock::Moment;
 use crate::execution::control::Control;
 use crate::extraction::{ExtractError, Extraction, check};
-use crate::lattice::Lattice;
+use crate::lattice::{CellBox, Lattice, Part};
 use crate::placement;
 use crate::settings::{Execution, ExtractSettings, Positions};
 use crate::slabs::Progress;
 use crate::slabs::{Run, threads_and_slabs};
-use crate::source::{Request, Sampler, Source};
+use crate::source::{NormalsOf, Request, Sampler, Source};
 use crate::surface::trace::Trace;
 #[cfg(feature = "tetrahedra")]
 use crate::tetrahedra::{by_cell::CellStreamer, dense, streamed::Streamer};
@@ -58,8 +58,10 @@ pub struct Extractor {
     /// Where the last mesh came from, if `traced`.
     pub(crate) trace: Trace,
     pub(crate) traced: bool,
-    /// Whether meshes have no normals.
-    pub(crate) without_normals: bool,
+    /// What normals are made of.
+    pub(crate) normals: NormalsOf,
+    /// The cells whose triangles are wanted, of the whole lattice, where not all are. Those that cannot leave others out make more.
+    pub(crate) wanted: Option<CellBox>,
     pub(crate) most_vertices: MostVertices,
 }
 
@@ -233,8 +235,8 @@ impl Extractor {
         extraction: &mut Extraction,
     ) -> Result<(), ExtractError> {
         let most_vertices = self.most_vertices.0;
-        let with_normals = !self.without_normals;
-        let request = Request { source, lattice, settings, control, most_vertices, with_normals, start };
+        let (normals, part) = (self.normals, self.wanted.map(|cells| Part::of(lattice, cells)));
+        let request = Request { source, lattice, settings, control, most_vertices, normals, part, start };
         let trace = self.traced.then_some(&mut self.trace);
         let run = Run { request: &request, progress: self.progress.as_deref(), trace, extraction };
         match cubes {

@@ -7,6 +7,7 @@ mod counts;
 mod directions;
 pub(crate) mod endless;
 mod layout;
+mod part;
 pub(crate) mod tetrahedra;
 
 pub use box_grid::BoxGrid;
@@ -15,6 +16,7 @@ pub(crate) use coordinates::{Border, Coordinates};
 pub(crate) use directions::{ALL_DIRECTIONS, DIRECTIONS, DirectionSet, Directions, Offset, members};
 pub use endless::{Grid, GridError};
 pub(crate) use layout::{Layout, PADDING_LAYERS, PointKind};
+pub(crate) use part::Part;
 
 use std::fmt;
 
@@ -323,6 +325,13 @@ impl Lattice {
     pub(crate) fn cell_box(&self) -> CellBox {
         let end = [0, 1, 2].map(|axis| self.origin[axis].wrapping_add_unsigned(self.cells[axis]));
         CellBox { start: self.origin, end }
+    }
+
+    /// The cells of a part of this window, in the whole lattice.
+    pub(crate) fn cells_of(&self, part: Part) -> CellBox {
+        let [start, end] = [part.start, part.end]
+            .map(|corner| [0, 1, 2].map(|axis| self.origin[axis].wrapping_add(corner[axis] as i32)));
+        CellBox { start, end }
     }
 
     /// Whether there is no box.

@@ -23,6 +23,7 @@ use crate::clock::Moment;
 use crate::execution::control::Threads;
 use crate::execution::threads::{ARE_THERE, on_each};
 use crate::extraction::{ExtractError, Extraction};
+use crate::lattice::Part;
 use crate::source::Request;
 use crate::surface::trace::Trace;
 
@@ -58,6 +59,11 @@ pub(crate) trait Streamed: Sync + Sized {
     /// may be the next slab's. Vertices are numbered from the slab's first on, so that the numbers of the whole surface are these
     /// plus a constant. The first pass comes first at each step.
     fn passes(&self, own: Range<usize>) -> impl AsRef<[Pass<Self>]>;
+
+    /// The cells that are extracted, where not all are: those of [`Request::part`], if the extractor can leave others out.
+    fn part(&self) -> Option<Part> {
+        None
+    }
 
     /// What is left to do when the passes are through.
     fn end(&self, _slab: &mut Slab<Self::Workspace>) {}
@@ -104,6 +110,7 @@ pub(crate) fn in_slabs<S: Streamed>(
     }
     // The first piece is written where the whole mesh will be.
     pieces[0].positions = std::mem::take(&mut extraction.mesh.positions);
+    pieces[0].normals = std::mem::take(&mut extraction.mesh.normals);
     pieces[0].surface.triangles = std::mem::take(&mut extraction.mesh.triangles);
     pieces[0].surface.trace = trace.as_deref_mut().map(std::mem::take);
     let allocation = start.elapsed();
@@ -121,7 +128,7 @@ pub(crate) fn in_slabs<S: Streamed>(
     };
     let traced = trace.is_some();
     on_slabs(layers, control.threads, workspaces, pieces, |own, workspace, piece| {
-        piece.clear(traced);
+        piece.clear(traced, of.part());
         let vertices = Vertices::within(piece);
         Slab { own, workspace, vertices, piece, layer_done: &layer_done }.stream(of, request)
     })?;

@@ -6,7 +6,7 @@ use crate::active::Bricks;
 use crate::clock::Moment;
 use crate::execution::control::Control;
 use crate::extraction::ExtractError;
-use crate::lattice::{CellBox, Lattice};
+use crate::lattice::{CellBox, Lattice, Part};
 use crate::sampling::level::Level;
 use crate::settings::ExtractSettings;
 
@@ -79,6 +79,18 @@ pub(crate) enum Sampler<'a> {
     Stored(&'a dyn StoredSamples),
 }
 
+/// What normals are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum NormalsOf {
+    /// The triangles round a vertex.
+    #[default]
+    Triangles,
+    /// The differences between samples, by extractors that can.
+    Samples,
+    /// There are none.
+    Nothing,
+}
+
 /// One extraction: valid settings, a field made ready or as many samples as the lattice has.
 #[derive(Clone, Copy)]
 pub(crate) struct Request<'a> {
@@ -87,8 +99,10 @@ pub(crate) struct Request<'a> {
     pub(crate) settings: &'a ExtractSettings,
     pub(crate) control: Control<'a>,
     pub(crate) most_vertices: u32,
-    /// Whether anybody looks at normals.
-    pub(crate) with_normals: bool,
+    /// Which normals somebody looks at.
+    pub(crate) normals: NormalsOf,
+    /// The cells whose triangles somebody looks at, where not at all of them. An extractor may make more.
+    pub(crate) part: Option<Part>,
     /// When it began.
     pub(crate) start: Moment,
 }

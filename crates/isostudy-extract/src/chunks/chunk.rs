@@ -282,10 +282,16 @@ impl Chunk {
 
     /// Finds the box of the vertices.
     pub(super) fn close(&mut self) {
-        self.bounds = self.positions.iter().fold(None, |bounds: Option<Aabb>, &p| {
-            let Aabb { min, max } = bounds.unwrap_or(Aabb { min: p, max: p });
-            let axes = [0, 1, 2];
-            Some(Aabb { min: axes.map(|i| min[i].min(p[i])), max: axes.map(|i| max[i].max(p[i])) })
+        self.bounds = self.positions.first().map(|&first| {
+            let (mut min, mut max) = (first, first);
+            for p in &self.positions {
+                for axis in 0..3 {
+                    // No position is not a number. So written it is one instruction.
+                    min[axis] = if p[axis] < min[axis] { p[axis] } else { min[axis] };
+                    max[axis] = if p[axis] > max[axis] { p[axis] } else { max[axis] };
+                }
+            }
+            Aabb { min, max }
         });
     }
 }

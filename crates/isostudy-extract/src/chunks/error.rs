@@ -35,6 +35,8 @@ pub enum ChunkError {
     EndlessCollapse,
     /// [`Normals::Field`](crate::Normals::Field) of samples.
     NormalsNeedField,
+    /// [`Normals::Samples`](crate::Normals::Samples) of a field, of several levels, or by a method that has none.
+    NormalsNeedSamples,
     /// Positions relative to a chunk in a box.
     RelativeInBox,
     /// A setting of the method is out of its range.
@@ -66,6 +68,9 @@ in_words! {
         Self::EndlessSamples => "a grid without an end has no last sample: give a Source::Window";
         Self::EndlessCollapse => "edge collapse needs a box";
         Self::NormalsNeedField => "samples have no gradient between them: Normals::Field needs a field";
+        Self::NormalsNeedSamples =>
+            "Normals::Samples is for chunks of one level and of samples, by marching cubes without a placement or \
+             surface nets without smoothing";
         Self::RelativeInBox => "positions relative to a chunk are for a grid without an end";
         Self::Settings(error) => "{error}";
         Self::Method => "this method makes no chunks";

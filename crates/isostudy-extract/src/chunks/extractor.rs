@@ -28,7 +28,7 @@ use crate::method::{Method, MethodError};
 use crate::placement::FieldTargets;
 use crate::sampling::level::Level;
 use crate::settings::{ExtractSettings, Placement, Positions};
-use crate::source::Source;
+use crate::source::{NormalsOf, Source};
 use crate::surface::normals::accumulate;
 
 /// Of what decides about a surface component, this much is tried at first beyond the chunk.
@@ -161,14 +161,21 @@ impl ChunkExtractor {
         };
         let mut extractor = Extractor::new();
         extractor.traced = true;
-        let has_normals = world.settings.normals != Normals::None;
-        extractor.without_normals = !has_normals;
         let family = method.family();
+        let (normals, halo) = match world.settings.normals {
+            Normals::Triangles | Normals::Field => (NormalsOf::Triangles, family.halo()),
+            Normals::Samples => {
+                let halo = family.halo_with_normals_of_samples().ok_or(ChunkError::NormalsNeedSamples)?;
+                (NormalsOf::Samples, Some(halo))
+            }
+            Normals::None => (NormalsOf::Nothing, family.halo_without_normals()),
+        };
+        extractor.normals = normals;
         Ok(Self {
             world,
             how,
             whole,
-            halo: if has_normals { family.halo() } else { family.halo_without_normals() },
+            halo,
             extractor,
             extraction: Extraction::default(),
             samples: Vec::new(),
@@ -378,6 +385,9 @@ impl ChunkExtractor {
         control: Control,
         chunk: &mut Chunk,
     ) -> Result<(), ChunkError> {
+        if self.world.settings.normals == Normals::Samples {
+            return Err(ChunkError::NormalsNeedSamples);
+        }
         self.by_windows(Given::Field(field), cells, control, chunk)?;
         if self.world.settings.normals == Normals::Field {
             let (isovalue, spacing) = (self.how.settings.isovalue, self.spacing());
@@ -415,7 +425,10 @@ impl ChunkExtractor {
                 chunk.close();
                 return Ok(());
             } else {
-                let lattice = self.extract_window(given, window, control)?;
+                // Normals of triangles are of all that have a vertex of the chunk.
+                let beyond = u32::from(self.extractor.normals == NormalsOf::Triangles);
+                let wanted = (placement == Placement::MeanOfCrossings).then(|| cells.grown(beyond, &window));
+                let lattice = self.extract_window(given, window, wanted, control)?;
                 let is_settled = match given {
                     #[cfg(any(feature = "tetrahedra", feature = "cubes"))]
                     Given::Field(field) if placement.calls_the_field() => {
@@ -453,7 +466,7 @@ impl ChunkExtractor {
         let mut margin = halo + FIRST_MARGIN;
         loop {
             let window = cells.grown(margin, &whole);
-            let lattice = self.extract_window(given, window, control)?;
+            let lattice = self.extract_window(given, window, None, control)?;
             self.start(chunk, cells, &lattice);
             chunk.numbered_by_use = true;
             let (mesh, trace) = (&self.extraction.mesh, &self.extractor.trace);
@@ -530,11 +543,12 @@ impl ChunkExtractor {
             .is_some_and(|(low, high)| low > self.how.settings.isovalue || high <= self.how.settings.isovalue)
     }
 
-    /// Extracts the lattice within a box, with its trace, before vertices are moved or edges collapsed.
+    /// Extracts the lattice within a box, or the cells of it that are `wanted`, with its trace, before vertices are moved or edges collapsed.
     fn extract_window(
         &mut self,
         given: Given,
         window: CellBox,
+        wanted: Option<CellBox>,
         control: Control,
     ) -> Result<Lattice, ChunkError> {
         let lattice = self.lattice(window)?;
@@ -573,6 +587,7 @@ impl ChunkExtractor {
             ..self.how.settings
         };
         let extraction = &mut self.extraction;
+        self.extractor.wanted = wanted;
         self.extractor.extract_by(self.how.way, source, &lattice, &settings, control, extraction)?;
         Ok(lattice)
     }

@@ -2,6 +2,7 @@
 
 use std::collections::TryReserveError;
 
+use glam::Vec3;
 use isostudy_mesh::TriangleMesh;
 
 use super::chunk::Chunk;
@@ -24,7 +25,13 @@ pub(super) fn cut_out(
     normals: Normals,
     chunk: &mut Chunk,
 ) -> Result<(), TryReserveError> {
-    let seen = window.cell_box();
+    let seen = match trace.part {
+        Some(part) => window.cells_of(part),
+        None => window.cell_box(),
+    };
+    if seen == chunk.cells && trace.part.is_some() && !trace.has_spare {
+        return copied(mesh, trace, normals, chunk);
+    }
     numbers.clear();
     refill(numbers, mesh.positions.len(), NOWHERE)?;
     for (number, key) in numbers.iter_mut().zip(&trace.keys) {
@@ -49,5 +56,31 @@ pub(super) fn cut_out(
         }
     }
     chunk.triangles.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
+    Ok(())
+}
+
+/// The same of a mesh that is the chunk's.
+fn copied(
+    mesh: &TriangleMesh,
+    trace: &Trace,
+    normals: Normals,
+    chunk: &mut Chunk,
+) -> Result<(), TryReserveError> {
+    append(&mut chunk.triangles, &mesh.triangles)?;
+    append(&mut chunk.triangle_cells, &trace.cells)?;
+    append(&mut chunk.keys, &trace.keys)?;
+    let as_array = |point: &Vec3| point.to_array();
+    chunk.positions.try_reserve(mesh.positions.len())?;
+    chunk.positions.extend(mesh.positions.iter().map(as_array));
+    if normals != Normals::None {
+        chunk.normals.try_reserve(mesh.normals.len())?;
+        chunk.normals.extend(mesh.normals.iter().map(as_array));
+    }
+    Ok(())
+}
+
+fn append<T: Copy>(to: &mut Vec<T>, items: &[T]) -> Result<(), TryReserveError> {
+    to.try_reserve(items.len())?;
+    to.extend_from_slice(items);
     Ok(())
 }

@@ -44,6 +44,11 @@ pub enum Normals {
     /// [`ScalarField::gradient`](crate::ScalarField::gradient) a vertex, or of seven samples where there is none. Where there
     /// is no direction, that of the triangles. Needs a field.
     Field,
+    /// Against the gradient of the samples round the vertex: as smooth, and cheaper than those of triangles, since nothing but the
+    /// chunk's own triangles is made. In a cell it is that of the trilinear interpolant. On an edge it is interpolated between central
+    /// differences at both ends. Zero where samples have no direction. Needs samples, and [`Cubes`](crate::Cubes) whose vertices are not
+    /// placed otherwise, or [`SurfaceNets`](crate::SurfaceNets) without smoothing.
+    Samples,
     /// There are none: [`Chunk::normals`](crate::Chunk) is empty.
     None,
 }

@@ -114,7 +114,7 @@ mod tests {
         let triangles = (0..cells)
             .flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 1], [2 * i + 2, 2 * i + 3, 2 * i + 1]])
             .collect();
-        let trace = Trace { keys: Vec::new(), cells: (0..cells).flat_map(|i| [i, i]).collect() };
+        let trace = Trace { cells: (0..cells).flat_map(|i| [i, i]).collect(), ..Trace::default() };
         let bounds = Bounds { min: Vec3::splat(-9.0), max: Vec3::splat(99.0) };
         let whole = Lattice::try_new(Arrangement::SimpleCubic, bounds, 1.0).unwrap();
         let end = [cells as i32, 1, 1];

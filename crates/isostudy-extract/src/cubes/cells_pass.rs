@@ -10,6 +10,8 @@ use super::records::Records;
 use super::sampling::Samples;
 use super::tubes::INNER;
 use super::vertices::{Placer, Record, corner_of};
+use crate::lattice::Part;
+use crate::sampling::bits::between;
 use crate::sampling::in_sight::Values;
 use crate::sampling::rows::next;
 use crate::surface::triangulation::Triangulation;
@@ -28,6 +30,8 @@ pub(super) struct TrianglePass<'a> {
     pub(super) values: Values<'a>,
     pub(super) patches: &'a Patches,
     pub(super) placer: &'a Placer<'a>,
+    /// The cells that have triangles.
+    pub(super) part: Part,
 }
 
 impl TrianglePass<'_> {
@@ -39,8 +43,11 @@ impl TrianglePass<'_> {
         best: &mut BestTriangles,
         result: &mut Triangulation,
     ) -> Result<(), TryReserveError> {
-        let Self { grid, samples, patches, .. } = *self;
-        for y in 0..grid.size[1] - 1 {
+        let Self { grid, samples, patches, part, .. } = *self;
+        if !part.has(2, z) {
+            return Ok(());
+        }
+        for y in part.start[1]..part.end[1] {
             let rows = [[y, z], [y + 1, z], [y, z + 1], [y + 1, z + 1]];
             if samples.is_uniform(&rows) {
                 continue;
@@ -52,7 +59,7 @@ impl TrianglePass<'_> {
                 let after = lines.map(|line| next(line, word));
                 let any = here.iter().chain(&after).fold(0, |any, bits| any | bits);
                 let all = here.iter().chain(&after).fold(!0, |all, bits| all & bits);
-                let mut left = any & !all & grid.with_next(word);
+                let mut left = any & !all & between(word, part.start[0], part.end[0]);
                 result.cells_visited += u64::from(left.count_ones());
                 result.triangles.try_reserve(MOST_TRIANGLES * left.count_ones() as usize)?;
                 while left != 0 {
@@ -79,7 +86,7 @@ impl TrianglePass<'_> {
                         result.triangles.extend(best.triangles.iter().map(numbered));
                     }
                     if let Some(trace) = &mut result.trace {
-                        trace.close_cell(grid.lattice, [x, y, z], result.triangles.len())?;
+                        trace.close_cell(part.number([x, y, z]), result.triangles.len())?;
                     }
                 }
             }

@@ -12,8 +12,9 @@ use super::sampling::{Samples, Sampling};
 use super::vertices::{Placer, Record, VertexPass};
 use super::{Kept, Rule};
 use crate::extraction::ExtractError;
+use crate::lattice::Part;
 use crate::slabs::{Pass, Run, Slab, Stage, Streamed};
-use crate::source::Request;
+use crate::source::{NormalsOf, Request};
 
 /// The stages in order, timed and counted. The lattice is simple cubic: its points are the corners of the cubes. Vertices are
 /// drawn to the middles of their edges by a `pull`.
@@ -30,7 +31,8 @@ pub(crate) fn extract(
     let grid = kept.grid(request, 1)?;
     let (isovalue, all_corners) = (settings.isovalue, rule.faces.reads_all_corners());
     let sampling = Sampling { grid: &grid, source, isovalue, all_corners };
-    kept.stream(&Patched { sampling, rule, patches, placer }, 1, workspaces, run)?;
+    let (part, has_normals) = (request.part, request.normals == NormalsOf::Samples);
+    kept.stream(&Patched { sampling, rule, patches, placer, part, has_normals }, 1, workspaces, run)?;
     kept.keep(grid);
     Ok(())
 }
@@ -41,6 +43,10 @@ struct Patched<'a> {
     rule: Rule,
     patches: &'a Patches,
     placer: Placer<'a>,
+    /// The cells that have triangles, where not all have.
+    part: Option<Part>,
+    /// Whether vertices have normals by samples.
+    has_normals: bool,
 }
 
 /// Buffers of one thread.
@@ -60,6 +66,10 @@ impl Streamed for Patched<'_> {
         workspace.records.fit(grid)
     }
 
+    fn part(&self) -> Option<Part> {
+        self.part
+    }
+
     fn passes(&self, own: Range<usize>) -> impl AsRef<[Pass<Self>]> {
         let layers = self.sampling.grid.size[2];
         let (lowest, highest) = (own.start, own.end);
@@ -77,6 +87,11 @@ impl Streamed for Patched<'_> {
 }
 
 impl Patched<'_> {
+    /// Those that have triangles.
+    fn cells(&self) -> Part {
+        self.part.unwrap_or_else(|| Part::whole(self.sampling.grid.lattice))
+    }
+
     fn find_sides(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
         self.sampling.find_sides(&mut slab.workspace.samples, layer)
     }
@@ -87,7 +102,7 @@ impl Patched<'_> {
     }
 
     fn place(&self, slab: &mut Slab<Workspace>, layer: usize) -> Result<(), ExtractError> {
-        let Self { sampling, rule, patches, ref placer } = *self;
+        let Self { sampling, rule, patches, ref placer, has_normals, .. } = *self;
         let Workspace { samples, records, .. } = &mut *slab.workspace;
         let Sampling { grid, source, isovalue, .. } = sampling;
         let pass = VertexPass {
@@ -98,6 +113,8 @@ impl Patched<'_> {
             rule,
             patches,
             placer,
+            part: self.cells(),
+            has_normals,
         };
         // Vertices of the layer above the slab's cells are the next slab's.
         let is_own = layer < slab.own.end || layer + 1 == grid.size[2];
@@ -111,7 +128,8 @@ impl Patched<'_> {
             slab.piece.tail = slab.piece.surface.triangles.len();
         }
         let Workspace { samples, records, best } = &mut *slab.workspace;
-        let pass = TrianglePass { grid, samples, values: samples.values(grid, source), patches, placer };
+        let (values, part) = (samples.values(grid, source), self.cells());
+        let pass = TrianglePass { grid, samples, values, patches, placer, part };
         pass.layer(layer, records, best, &mut slab.piece.surface)?;
         (slab.layer_done)();
         Ok(())

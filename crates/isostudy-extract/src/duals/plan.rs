@@ -110,6 +110,12 @@ impl Table {
         if self.patches { self.joinable[usize::from(inside)] } else { None }
     }
 
+    /// Whether a cell has a vertex for each loop of surface in it.
+    #[inline]
+    pub(super) fn has_patches(&self) -> bool {
+        self.patches
+    }
+
     /// The corner that an edge begins at, and its axis.
     pub(super) fn edge(&self, edge: u8) -> (u8, u8) {
         self.edges[usize::from(edge)]

@@ -10,6 +10,7 @@ use super::vertices::Record;
 use crate::cubes::grid::CubeGrid;
 use crate::cubes::records::Records;
 use crate::cubes::sampling::Samples;
+use crate::lattice::Part;
 use crate::sampling::bits::between;
 use crate::sampling::level::Level;
 use crate::sampling::rows::next;
@@ -64,11 +65,8 @@ impl Quadrilateral {
     /// Two triangles, on either side of the diagonal through the lowest cell or of the other.
     #[inline]
     pub(super) fn cut(self, by_other: bool) -> [[u32; 3]; 2] {
-        let mut corners = self.corners;
-        if by_other {
-            corners.rotate_left(1);
-        }
-        let [a, b, c, d] = corners;
+        let [a, b, c, d] = self.corners;
+        let [a, b, c, d] = if by_other { [b, c, d, a] } else { [a, b, c, d] };
         if self.leads_out { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] }
     }
 
@@ -127,6 +125,8 @@ pub(super) struct QuadPass<'a> {
     pub(super) positions: &'a [Vec3],
     /// Of a field that decides on diagonals.
     pub(super) level: Option<Level<'a>>,
+    /// The points whose edges have quadrilaterals.
+    pub(super) part: Part,
 }
 
 impl QuadPass<'_> {
@@ -135,26 +135,35 @@ impl QuadPass<'_> {
     pub(super) fn layer(&self, z: usize, result: &mut Triangulation) -> Result<u64, TryReserveError> {
         let [_, ny, nz] = self.grid.size;
         let mut crossings = 0;
-        for y in 0..ny {
+        let Part { start, end } = self.part;
+        if !self.part.has(2, z) {
+            return Ok(crossings);
+        }
+        // Beyond the last cells there are points, whose edges are counted.
+        let end =
+            [0, 1].map(|axis| if end[axis] + 1 == self.grid.size[axis] { end[axis] + 1 } else { end[axis] });
+        for y in start[1]..end[1] {
             // Of the rows of cells round an edge; the lower ones of the first row and layer are asked for by none.
             let (back, below) = (y.saturating_sub(1), z.saturating_sub(1));
             let rows = [[back, below], [y, below], [back, z], [y, z]].map(|[y, z]| self.records.start(y, z));
             for word in 0..self.grid.words {
                 let Some((here, crossed)) = self.crossed([y, z], word) else { break };
                 crossings += crossed.iter().map(|bits| u64::from(bits.count_ones())).sum::<u64>();
-                let inner = between(word, 1, self.grid.size[0] - 1);
+                let of_part = between(word, start[0], end[0]);
+                let inner = between(word, 1, self.grid.size[0] - 1) & of_part;
                 let (y_inner, z_inner) = (0 < y && y + 1 < ny, 0 < z && z + 1 < nz);
                 let shared = [
-                    if y_inner && z_inner { crossed[0] } else { 0 },
+                    if y_inner && z_inner { crossed[0] & of_part } else { 0 },
                     if z_inner { crossed[1] & inner } else { 0 },
                     if y_inner { crossed[2] & inner } else { 0 },
                 ];
                 let mut left = shared[0] | shared[1] | shared[2];
+                let quadrilaterals = shared.iter().map(|bits| bits.count_ones() as usize).sum::<usize>();
+                result.triangles.try_reserve(2 * quadrilaterals)?;
                 while left != 0 {
                     let bit = left.trailing_zeros();
                     left &= left - 1;
                     let place = [64 * word + bit as usize, y, z];
-                    result.triangles.try_reserve(6)?;
                     let (x, leads_out) = (place[0], here >> bit & 1 != 0);
                     let is_shared = |axis: usize| shared[axis] >> bit & 1 != 0;
                     let [low_low, high_low, low_high, high_high] = rows;
@@ -171,7 +180,7 @@ impl QuadPass<'_> {
                         result.triangles.extend_from_slice(&self.quadrilateral(cells, 2, leads_out));
                     }
                     if let Some(trace) = &mut result.trace {
-                        trace.close_cell(self.grid.lattice, place, result.triangles.len())?;
+                        trace.close_cell(self.part.number(place), result.triangles.len())?;
                     }
                 }
             }
@@ -229,7 +238,7 @@ impl QuadPass<'_> {
     #[inline(always)]
     fn vertex(&self, place: usize, corner: u8, axis: usize) -> u32 {
         let record = self.records.at(place);
-        record.first + self.plans.vertex(record.plan, self.plans.table.number(corner, axis))
+        record.first.wrapping_add(self.plans.vertex(record.plan, self.plans.table.number(corner, axis)))
     }
 }
 

@@ -10,8 +10,9 @@ use super::tangents::{Tangent, Tangents};
 use crate::cubes::grid::CubeGrid;
 use crate::cubes::records::Records;
 use crate::cubes::sampling::Samples;
-use crate::cubes::vertices::{Placer, corner_of};
-use crate::memory::push;
+use crate::cubes::vertices::{Placer, corner_of, outward};
+use crate::lattice::Part;
+use crate::sampling::bits::between;
 use crate::sampling::in_sight::Values;
 use crate::sampling::rows::next;
 use crate::slabs::Vertices;
@@ -32,6 +33,11 @@ pub(super) struct VertexPass<'a> {
     pub(super) placer: &'a Placer<'a>,
     /// Whether each vertex is in the middle of its cell.
     pub(super) in_middle: bool,
+    /// The points whose edges have quadrilaterals. Vertices are those of the cells that begin there, and those that the quadrilaterals
+    /// have beside them.
+    pub(super) part: Part,
+    /// Whether vertices have normals by samples.
+    pub(super) has_normals: bool,
 }
 
 impl VertexPass<'_> {
@@ -45,9 +51,12 @@ impl VertexPass<'_> {
         records: &mut Records<Record>,
         vertices: &mut Vertices,
     ) -> Result<u64, TryReserveError> {
-        let grid = self.grid;
+        let (grid, Part { start: first, end }) = (self.grid, self.part);
         let mut visited = 0;
-        for y in 0..grid.size[1] - 1 {
+        if z + 1 < first[2] || end[2] <= z {
+            return Ok(visited);
+        }
+        for y in first[1].saturating_sub(1)..end[1] {
             let rows = [[y, z], [y + 1, z], [y, z + 1], [y + 1, z + 1]];
             if self.samples.is_uniform(&rows) {
                 continue;
@@ -56,6 +65,9 @@ impl VertexPass<'_> {
             let values = rows.map(|[y, z]| self.values.row(y, z));
             let [ys, zs] = [[grid.at[1][y], grid.at[1][y + 1]], [grid.at[2][z], grid.at[2][z + 1]]];
             let start = records.start(y, z);
+            let is_row_beside = y < first[1] || z < first[2];
+            let lattice = grid.lattice;
+            let row_key = VertexKey::new(lattice.arrangement(), lattice.stored([0, y, z]), 0);
             for word in 0..grid.words {
                 let corners: [u64; 8] = std::array::from_fn(|c| {
                     let line = lines[c >> 1];
@@ -63,38 +75,58 @@ impl VertexPass<'_> {
                 });
                 let any = corners.iter().fold(0, |any, bits| any | bits);
                 let all = corners.iter().fold(!0, |all, bits| all & bits);
-                let mut left = any & !all & grid.with_next(word);
+                let of_part = between(word, first[0].saturating_sub(1), end[0]);
+                let mut left = any & !all & grid.with_next(word) & of_part;
                 visited += u64::from(left.count_ones());
                 while left != 0 {
                     let bit = left.trailing_zeros();
                     left &= left - 1;
-                    let cell = [64 * word + bit as usize, y, z];
+                    let x = 64 * word + bit as usize;
+                    let cell = [x, y, z];
                     let inside = (0..8).fold(0, |set, c| set | ((corners[c] >> bit & 1) as u8) << c);
-                    let plan = plans.number(inside, self.joined(plans, cell, inside), self.at_box(cell));
-                    let place = start + cell[0];
-                    records.set(place, Record { first: vertices.positions.len() as u32, plan });
-                    for (number, mean) in plans.at(plan).means.iter().enumerate() {
+                    let is_beside = is_row_beside || x < first[0];
+                    // Where a cell without patches is beside the part, its vertex is there if a quadrilateral needs it.
+                    let at_box = if is_beside && !plans.table.has_patches() { 0 } else { self.at_box(cell) };
+                    let plan = plans.number(inside, self.joined(plans, cell, inside), at_box);
+                    let mut numbers = 0..plans.at(plan).means.len();
+                    if is_beside {
+                        let needed = self.needed(plans, plan, cell, inside);
+                        if needed == 0 {
+                            continue;
+                        }
+                        numbers = needed.trailing_zeros() as usize..32 - needed.leading_zeros() as usize;
+                        vertices.has_spare |= needed.count_ones() as usize != numbers.len();
+                    }
+                    let first = (vertices.positions.len() as u32).wrapping_sub(numbers.start as u32);
+                    records.set(start + x, Record { first, plan });
+                    vertices.reserve(numbers.len(), self.has_normals)?;
+                    for number in numbers {
+                        let mean = &plans.at(plan).means[number];
                         let position = match &mut by_planes {
                             None if self.in_middle => {
-                                let xs = [grid.at[0][cell[0]], grid.at[0][cell[0] + 1]];
+                                let xs = [grid.at[0][x], grid.at[0][x + 1]];
                                 let [low, high] = [0, 1].map(|end| Vec3::new(xs[end], ys[end], zs[end]));
                                 low.midpoint(high)
                             }
                             None => {
-                                let x = cell[0];
                                 let values = std::array::from_fn(|c| values[c >> 1][x + (c & 1)]);
-                                self.mean([[grid.at[0][x], grid.at[0][x + 1]], ys, zs], values, mean)
+                                let ends = [[grid.at[0][x], grid.at[0][x + 1]], ys, zs];
+                                let (position, share) = self.mean(ends, &values, mean);
+                                if self.has_normals {
+                                    let lengths = (!lattice.is_endless())
+                                        .then(|| Vec3::from_array(ends.map(|[low, high]| high - low)));
+                                    vertices.normals.push(outward(&values, share, lengths));
+                                }
+                                position
                             }
                             #[cfg(feature = "dual-contouring")]
                             Some((sharp, tangents)) => self.meeting(plans, cell, mean.set, *sharp, tangents),
                             #[cfg(not(feature = "dual-contouring"))]
                             Some(_) => unreachable!("planes are for dual contouring"),
                         };
-                        push(&mut vertices.positions, position)?;
+                        vertices.positions.push(position);
                         if let Some(keys) = &mut vertices.keys {
-                            let lattice = grid.lattice;
-                            let place = lattice.stored(cell);
-                            push(keys, VertexKey::new(lattice.arrangement(), place, number))?;
+                            keys.push(row_key.along_x(x).numbered(number));
                         }
                     }
                 }
@@ -102,6 +134,28 @@ impl VertexPass<'_> {
         }
         vertices.numbered = vertices.positions.len() as u64;
         Ok(visited)
+    }
+
+    /// Which vertices of a cell beside the part are those of its quadrilaterals, one bit each.
+    #[inline(never)]
+    fn needed(&self, plans: &Plans, plan: u32, cell: [usize; 3], inside: u8) -> u32 {
+        let mut needed = 0;
+        for edge in 0..EDGES as u8 {
+            let (corner, axis) = plans.table.edge(edge);
+            let is_crossed = (inside >> corner ^ inside >> (corner | 1 << axis)) & 1 != 0;
+            let from = corner_of(cell, corner);
+            // Those in a side of the box have no quadrilateral.
+            let is_in_side = |other: usize| from[other] == 0 || from[other] + 1 == self.grid.size[other];
+            let has_four = (0..3).all(|other| other == usize::from(axis) || !is_in_side(other));
+            if is_crossed && has_four && self.part.contains(from) {
+                needed |= 1 << plans.vertex(plan, edge);
+                if !plans.table.has_patches() {
+                    // There is one.
+                    return needed;
+                }
+            }
+        }
+        needed
     }
 
     /// The face on which this cell and its neighbour both join their inside corners.
@@ -132,10 +186,10 @@ impl VertexPass<'_> {
         })
     }
 
-    /// The mean of the crossings of some edges of a cell between coordinates, with samples at its corners. In shares of its edges, so
-    /// that far from the origin no digits are lost.
-    #[inline]
-    fn mean(&self, ends: [[f32; 2]; 3], values: [f32; 8], of: &Mean) -> Vec3 {
+    /// The mean of the crossings of some edges of a cell between coordinates, with samples at its corners; and the same in shares of the
+    /// cell's edges. It is found in shares, so that far from the origin no digits are lost.
+    #[inline(always)]
+    fn mean(&self, ends: [[f32; 2]; 3], values: &[f32; 8], of: &Mean) -> (Vec3, Vec3) {
         let [low, high] = [0, 1].map(|end| Vec3::new(ends[0][end], ends[1][end], ends[2][end]));
         let mut shares = of.at_high_ends;
         for axis in 0..3 {
@@ -146,11 +200,11 @@ impl VertexPass<'_> {
                 let c = corners[edge];
                 Vec3::new(ends[0][c & 1], ends[1][c >> 1 & 1], ends[2][c >> 2])
             };
-            let share = self.placer.shares(from, here, there);
-            let counted = Vec4::select(of.edges[axis], share, Vec4::ZERO);
-            shares[axis] += counted.element_sum();
+            let share = self.placer.shares(from, here, there, of.edges[axis]);
+            shares[axis] += share.element_sum();
         }
-        (low + (high - low) * (shares / of.count)).max(low).min(high)
+        let share = shares / of.count;
+        ((low + (high - low) * share).max(low).min(high), share)
     }
 
     /// Where the tangent planes at the crossings of some edges meet.

@@ -10,7 +10,7 @@ use super::neighbours::{DIRECTIONS, Neighbours};
 use super::stitching::{Decision, Stitching};
 use super::windows::{self, LevelSamples, LevelWindow, Values, Windows};
 use crate::chunks::relative::{self, Seen, back};
-use crate::chunks::{Chunk, ChunkExtractor, ChunkSettings, World};
+use crate::chunks::{Chunk, ChunkError, ChunkExtractor, ChunkSettings, Normals, World};
 use crate::cubes::Faces;
 use crate::execution::control::Control;
 use crate::lattice::CellBox;
@@ -82,6 +82,9 @@ impl LevelExtractor {
     /// [`LevelError::Method`]; [`LevelError::Chunk`] for what [`ChunkExtractor::try_new`] refuses.
     pub fn try_new(grid: &Grid, method: &Method, settings: &ChunkSettings) -> Result<Self, LevelError> {
         let kind = LevelKind::of(method).ok_or(LevelError::Method)?;
+        if settings.normals == Normals::Samples {
+            return Err(ChunkError::NormalsNeedSamples.into());
+        }
         let mut made = Self {
             grid: *grid,
             method: *method,

@@ -442,7 +442,8 @@ impl Here<'_> {
         let of_triangles = normal.try_normalize().unwrap_or(Vec3::Z);
         let normal = match self.decision.normals {
             Normals::None => None,
-            Normals::Triangles => Some(of_triangles),
+            // By samples there are none across levels.
+            Normals::Triangles | Normals::Samples => Some(of_triangles),
             Normals::Field => Some(of_field().unwrap_or(of_triangles)),
         };
         add(chunk, key, position.to_array(), normal.map(|n| n.to_array()))

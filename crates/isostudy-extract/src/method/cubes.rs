@@ -142,6 +142,11 @@ impl Family for Cubes {
         }
     }
 
+    /// Differences at a corner are of the samples on either side of it.
+    fn halo_with_normals_of_samples(&self) -> Option<u32> {
+        if self.placement == Placement::MeanOfCrossings { Some(1) } else { None }
+    }
+
     /// A vertex of a cell is one of its neighbours' too, and their other vertices give it its normal; no vertex depends on
     /// samples beyond its own cells.
     fn unmoved_halo(&self) -> Option<u32> {

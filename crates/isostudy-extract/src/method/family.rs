@@ -61,6 +61,10 @@ pub(crate) trait Family {
     fn halo_without_normals(&self) -> Option<u32> {
         self.halo()
     }
+    /// The same where normals are of samples; `None` where there are no such normals.
+    fn halo_with_normals_of_samples(&self) -> Option<u32> {
+        None
+    }
     /// The same before vertices are moved or edges collapsed; `None` only where there are no chunks.
     fn unmoved_halo(&self) -> Option<u32> {
         None

@@ -99,6 +99,11 @@ impl Family for SurfaceNets {
         Some(self.smoothing + if self.patches { 2 } else { 1 })
     }
 
+    /// A cell's own samples give its vertices their normals.
+    fn halo_with_normals_of_samples(&self) -> Option<u32> {
+        if self.smoothing == 0 { self.halo_without_normals() } else { None }
+    }
+
     /// A triangle has vertices of the next lower cells, whose triangles give them normals; how such a cell is cut may be for the
     /// next one to say. Each step of smoothing looks one cell farther.
     fn unmoved_halo(&self) -> Option<u32> {

@@ -48,7 +48,13 @@ impl<'a> Values<'a> {
         self.values[(z % self.slots * self.size[1] + y) * self.size[0] + x]
     }
 
+    /// All of them, where a lattice has all in memory.
+    pub(crate) fn all(&self) -> &'a [f32] {
+        self.values
+    }
+
     /// Those of a row.
+    #[inline]
     pub(crate) fn row(&self, y: usize, z: usize) -> &'a [f32] {
         &self.values[(z % self.slots * self.size[1] + y) * self.size[0]..][..self.size[0]]
     }

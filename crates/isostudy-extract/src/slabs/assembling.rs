@@ -12,7 +12,7 @@ use crate::execution::control::Threads;
 use crate::execution::threads::{ARE_THERE, on_each};
 use crate::extraction::{Counts, ExtractError, Extraction, StageTimes};
 use crate::memory::{refill, with_room};
-use crate::source::Request;
+use crate::source::{NormalsOf, Request};
 use crate::surface::trace::Trace;
 
 /// Makes the mesh of the whole out of its pieces, and finishes it as the settings say. `allocating` and `streaming` are what
@@ -53,9 +53,11 @@ pub(super) fn assemble(
 
     let making_normals = Moment::now();
     let seams = if collapsing.is_some() { None } else { Some(&*seams) };
-    match request.with_normals {
-        true => make_normals(mesh, seams, control.threads, threads)?,
-        false => mesh.normals.clear(),
+    mesh.normals = std::mem::take(&mut first.normals);
+    match request.normals {
+        NormalsOf::Triangles => make_normals(mesh, seams, control.threads, threads)?,
+        NormalsOf::Samples => crate::surface::normals::normalise(&mut mesh.normals),
+        NormalsOf::Nothing => mesh.normals.clear(),
     }
     times.normals = making_normals.elapsed();
 
@@ -103,6 +105,8 @@ fn join(pieces: &mut [Piece], most_vertices: u32, on: Threads) -> Result<Vec<Sea
     first.surface.triangles.try_reserve(triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
     let targets: usize = rest.iter().map(|piece| piece.targets.len()).sum();
     first.targets.try_reserve(targets).map_err(|_| ExtractError::NoMemoryForMesh)?;
+    let normals: usize = rest.iter().map(|piece| piece.normals.len()).sum();
+    first.normals.try_reserve(normals).map_err(|_| ExtractError::NoMemoryForMesh)?;
     seams.push(Seam { vertices: 0, head: first.head, tail: first.tail });
     let (mut vertices, mut base) = (first.positions.len(), first.surface.triangles.len());
     for piece in &mut *rest {
@@ -110,6 +114,7 @@ fn join(pieces: &mut [Piece], most_vertices: u32, on: Threads) -> Result<Vec<Sea
         vertices += piece.positions.len();
         base += piece.surface.triangles.len();
         first.targets.append(&mut piece.targets);
+        first.normals.append(&mut piece.normals);
         if let (Some(whole), Some(trace)) = (&mut first.surface.trace, &mut piece.surface.trace) {
             whole.append(trace)?;
         }

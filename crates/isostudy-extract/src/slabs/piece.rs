@@ -6,7 +6,7 @@ use std::time::Duration;
 use glam::Vec3;
 
 use crate::extraction::ExtractError;
-use crate::lattice::Lattice;
+use crate::lattice::{Lattice, Part};
 use crate::memory::push;
 use crate::surface::trace::VertexKey;
 use crate::surface::triangulation::Triangulation;
@@ -21,6 +21,8 @@ pub(crate) struct Piece {
     pub(crate) positions: Vec<Vec3>,
     /// Where the placer wants them.
     pub(crate) targets: Vec<Vec3>,
+    /// Where they are of samples.
+    pub(crate) normals: Vec<Vec3>,
     pub(crate) surface: Triangulation,
     /// Vertices numbered in the layers below the slab.
     pub(crate) below: u64,
@@ -41,15 +43,16 @@ pub(crate) struct SlabTimes {
 }
 
 impl Piece {
-    /// Empty, to be traced or not.
-    pub(crate) fn clear(&mut self, traced: bool) {
+    /// Empty, to be traced or not, of a part or of all.
+    pub(crate) fn clear(&mut self, traced: bool, part: Option<Part>) {
         self.positions.clear();
         self.targets.clear();
+        self.normals.clear();
         self.surface.triangles.clear();
         let triangles = std::mem::take(&mut self.surface.triangles);
         let mut trace = traced.then(|| self.surface.trace.take().unwrap_or_default());
         if let Some(trace) = &mut trace {
-            trace.clear();
+            trace.start(part);
         }
         self.surface = Triangulation { triangles, trace, ..Triangulation::default() };
         (self.below, self.crossing_ends, self.head, self.tail) = (0, 0, 0, 0);
@@ -65,8 +68,12 @@ pub(crate) struct Vertices {
     pub(crate) positions: Vec<Vec3>,
     /// Where the settings want them, if elsewhere.
     pub(crate) targets: Vec<Vec3>,
+    /// Of samples; none where others are asked for.
+    pub(crate) normals: Vec<Vec3>,
     /// Where they are asked for.
     pub(crate) keys: Option<Vec<VertexKey>>,
+    /// Whether some are not of the part that is asked for.
+    pub(crate) has_spare: bool,
     /// Lattice edges of the slab's own layers that cross the surface, seen from either end.
     pub(crate) crossing_ends: u64,
 }
@@ -77,8 +84,22 @@ impl Vertices {
         Self {
             positions: std::mem::take(&mut piece.positions),
             targets: std::mem::take(&mut piece.targets),
+            normals: std::mem::take(&mut piece.normals),
             keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
             ..Self::default()
+        }
+    }
+
+    /// Makes room for so many more vertices, with normals by samples or without.
+    #[inline]
+    pub(crate) fn reserve(&mut self, more: usize, has_normals: bool) -> Result<(), TryReserveError> {
+        self.positions.try_reserve(more)?;
+        if has_normals {
+            self.normals.try_reserve(more)?;
+        }
+        match &mut self.keys {
+            Some(keys) => keys.try_reserve(more),
+            None => Ok(()),
         }
     }
 
@@ -106,10 +127,10 @@ impl Vertices {
 
     /// Makes them those of a slab's piece.
     pub(crate) fn give_to(self, piece: &mut Piece) {
-        (piece.positions, piece.targets) = (self.positions, self.targets);
+        (piece.positions, piece.targets, piece.normals) = (self.positions, self.targets, self.normals);
         piece.crossing_ends = self.crossing_ends;
         if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, self.keys) {
-            trace.keys = keys;
+            (trace.keys, trace.has_spare) = (keys, self.has_spare);
         }
     }
 }

@@ -47,7 +47,8 @@ fn doubled_area(positions: &[Vec3], triangle: [u32; 3]) -> Vec3 {
     (b - a).cross(c - a)
 }
 
-fn normalise(normals: &mut [Vec3]) {
+/// Makes all of unit length; zero where they have no direction.
+pub(crate) fn normalise(normals: &mut [Vec3]) {
     for normal in normals {
         *normal = normal.normalize_or_zero();
     }

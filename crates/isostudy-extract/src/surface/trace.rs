@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use crate::lattice::{Arrangement, Lattice, cell_of_stored};
+use crate::lattice::{Arrangement, Part, cell_of_stored};
 
 /// Which crossings of a lattice a vertex stands for: the sample point that they are nearest to, and the first lattice edge
 /// at that point among them.
@@ -96,6 +96,18 @@ impl VertexKey {
         (self.0 & ((1 << DIRECTION_BITS) - 1)) as usize
     }
 
+    /// The same so many points farther along x, of a lattice that stores one point for each cell.
+    #[inline]
+    pub(crate) fn along_x(self, points: usize) -> Self {
+        Self(self.0 + ((points as u128) << DIRECTION_BITS))
+    }
+
+    /// The same with the number of another vertex of its point, where it had number 0.
+    #[inline]
+    pub(crate) fn numbered(self, number: usize) -> Self {
+        Self(self.0 | number as u128)
+    }
+
     /// The same in the grid of a level.
     pub(crate) fn at_level(self, level: u32) -> Self {
         Self(self.0 & ((1 << LEVEL_SHIFT) - 1) | u128::from(level) << LEVEL_SHIFT)
@@ -116,20 +128,22 @@ impl VertexKey {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Trace {
     pub(crate) keys: Vec<VertexKey>,
-    /// Numbers of cells in the box that was extracted.
+    /// Numbers of cells in the part that was extracted, or of all.
     pub(crate) cells: Vec<u32>,
+    /// The part, where nothing but it was extracted.
+    pub(crate) part: Option<Part>,
+    /// Whether there are vertices that the part has not.
+    pub(crate) has_spare: bool,
 }
 
 impl Trace {
-    /// Names `cell` for all triangles that have none yet.
-    pub(crate) fn close_cell(
-        &mut self,
-        lattice: &Lattice,
-        cell: [usize; 3],
-        triangles: usize,
-    ) -> Result<(), TryReserveError> {
-        self.cells.try_reserve(triangles - self.cells.len())?;
-        self.cells.resize(triangles, lattice.cell_number(cell));
+    /// Gives the `number` of a cell to all triangles that have none yet.
+    #[inline]
+    pub(crate) fn close_cell(&mut self, number: u32, triangles: usize) -> Result<(), TryReserveError> {
+        let more = triangles - self.cells.len();
+        self.cells.try_reserve(more)?;
+        // Mostly two, for which `resize` takes longer.
+        (0..more).for_each(|_| self.cells.push(number));
         Ok(())
     }
 
@@ -139,12 +153,15 @@ impl Trace {
         self.cells.try_reserve(other.cells.len())?;
         self.keys.append(&mut other.keys);
         self.cells.append(&mut other.cells);
+        self.has_spare |= other.has_spare;
         Ok(())
     }
 
-    pub(crate) fn clear(&mut self) {
+    /// Empty, of a part or of all.
+    pub(crate) fn start(&mut self, part: Option<Part>) {
         self.keys.clear();
         self.cells.clear();
+        (self.part, self.has_spare) = (part, false);
     }
 }
 

@@ -8,8 +8,9 @@ use glam::Vec3;
 use isostudy_extract::by_lattice::{ExtractSettings, Lattice, extract};
 use isostudy_extract::{
     Aabb, Arrangement, BoxGrid, CellBox, Chunk, ChunkError, ChunkExtractor, ChunkSettings, Clustering,
-    Control, Execution, ExtractError, Grid, Method, Normals, Placement, Positions, ScalarField, Source,
-    SurfaceNets, Tetrahedra, Topology, WeldError, from_fn, presets, weld_chunks,
+    Control, Cubes, Execution, ExtractError, Faces, Grid, LevelError, LevelExtractor, Method, Normals,
+    Placement, Positions, ScalarField, Source, SurfaceNets, Tetrahedra, Topology, WeldError, from_fn,
+    presets, weld_chunks,
 };
 use isostudy_field::{Asteroid, Sphere, StudyField};
 use isostudy_mesh::{Bounds, TriangleMesh};
@@ -398,4 +399,127 @@ fn chunks_without_normals_are_the_same_otherwise() {
         }
     }
     assert!(compared > 60 && narrower > 20, "{compared} {narrower}");
+}
+
+/// Samples of a chunk's window.
+fn window_of(extractor: &ChunkExtractor, field: &dyn ScalarField, cells: CellBox) -> (CellBox, Vec<f32>) {
+    let window = extractor.window(cells).unwrap().unwrap();
+    let mut samples = Vec::new();
+    extractor.layout(window).unwrap().fill(field, &mut samples);
+    (window, samples)
+}
+
+/// Methods that have normals by samples: with one vertex in a cell and several, with vertices on edges and within cells.
+fn with_normals_of_samples() -> [Method; 4] {
+    let patches = SurfaceNets::default().with_patches(true);
+    let trilinear = Cubes::default().with_faces(Faces::Trilinear);
+    [
+        Method::SurfaceNets(SurfaceNets::default()),
+        Method::SurfaceNets(patches),
+        Method::Cubes(Cubes::default()),
+        Method::Cubes(trilinear),
+    ]
+}
+
+/// Of noise, whose cells have all patterns there are: the chunk with normals by samples is the chunk, and its normals are those of its
+/// neighbours, to the bit.
+#[test]
+fn chunks_with_normals_of_samples_are_the_same_otherwise_and_fit() {
+    let noise = crate::two_levels::noise(5, 8.0, 40.0);
+    let grid = Grid::try_new([0.0; 3], 0.5).unwrap();
+    let mut shared = 0;
+    for method in with_normals_of_samples() {
+        let settings = ChunkSettings::default().with_isovalue(0.1);
+        let mut by_triangles = ChunkExtractor::try_new(&grid, &method, &settings).unwrap();
+        let settings = settings.with_normals(Normals::Samples);
+        let mut by_samples = ChunkExtractor::try_new(&grid, &method, &settings).unwrap();
+        let mut chunks = Vec::new();
+        for start in [[-7, 3, 2], [0, 3, 2], [-7, 10, 2], [-7, 3, 9]] {
+            let cells = CellBox { start, end: start.map(|i| i + 7) };
+            let expected = by_triangles.extract(&noise, cells, Control::default()).unwrap();
+            let (window, samples) = window_of(&by_samples, &noise, cells);
+            let source = Source::Window { cells: window, samples: &samples };
+            let found = by_samples.extract(source, cells, Control::default()).unwrap();
+            assert_eq!(found.keys, expected.keys, "{method:?} {start:?}");
+            assert_eq!(found.positions, expected.positions, "{method:?} {start:?}");
+            assert_eq!(found.triangles, expected.triangles, "{method:?} {start:?}");
+            assert_eq!(found.triangle_cells, expected.triangle_cells, "{method:?} {start:?}");
+            assert_eq!(found.normals.len(), found.positions.len());
+            for normal in &found.normals {
+                let length = Vec3::from(*normal).length();
+                assert!((length - 1.0).abs() < 1e-5 || length == 0.0, "{normal:?}");
+            }
+            chunks.push(found);
+        }
+        let first = &chunks[0];
+        for other in &chunks[1..] {
+            for (v, key) in first.keys.iter().enumerate() {
+                if let Some(w) = other.keys.iter().position(|of| of == key) {
+                    assert_eq!(first.normals[v].map(f32::to_bits), other.normals[w].map(f32::to_bits));
+                    shared += 1;
+                }
+            }
+        }
+        weld_chunks(&chunks).unwrap();
+    }
+    assert!(shared > 200, "{shared}");
+}
+
+/// A value that changes alike everywhere has one normal; that of a ball points away from its centre, to the angle of half a cell's side
+/// there, which is 0.04. In a box, too, whose last cells are thin.
+#[test]
+fn normals_of_samples_are_against_the_gradient() {
+    let plane = from_fn(|[x, y, z]: [f32; 3]| 3.3 - (x + 2.0 * y - 0.5 * z));
+    let ball = from_fn(|[x, y, z]: [f32; 3]| 3.1 - (x * x + y * y + z * z).sqrt());
+    let down = Vec3::new(1.0, 2.0, -0.5).normalize();
+    let thin =
+        BoxGrid { bounds: Bounds { min: Vec3::splat(-4.1), max: Vec3::new(4.0, 4.05, 4.0) }, spacing: 0.25 };
+    let grid = Grid::try_new([0.0; 3], 0.25).unwrap();
+    let settings = ChunkSettings::default().with_normals(Normals::Samples);
+    for method in with_normals_of_samples() {
+        let endless = ChunkExtractor::try_new(&grid, &method, &settings).unwrap();
+        let cells = CellBox { start: [-14; 3], end: [14; 3] };
+        let of_box = ChunkExtractor::in_box(&thin, &method, &settings).unwrap();
+        let whole = of_box.grid(64).next().unwrap();
+        for (mut extractor, cells) in [(endless, cells), (of_box, whole)] {
+            for (field, normal_at, most) in
+                [(&plane as &dyn ScalarField, None, 2e-3), (&ball, Some(Vec3::ZERO), 0.06)]
+            {
+                let (window, samples) = window_of(&extractor, field, cells);
+                let source = Source::Window { cells: window, samples: &samples };
+                let chunk = extractor.extract(source, cells, Control::default()).unwrap();
+                assert!(chunk.positions.len() > 500);
+                for (position, normal) in chunk.positions.iter().zip(&chunk.normals) {
+                    let expected = match normal_at {
+                        None => down,
+                        Some(centre) => (Vec3::from(*position) - centre).normalize(),
+                    };
+                    let off = (Vec3::from(*normal) - expected).length();
+                    assert!(off < most, "{method:?} {position:?}: {normal:?}, not {expected:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn normals_of_samples_are_refused_where_there_are_none() {
+    let grid = Grid::try_new([0.0; 3], 1.0).unwrap();
+    let settings = ChunkSettings::default().with_normals(Normals::Samples);
+    let tetrahedra = Method::Tetrahedra(Tetrahedra::new(Arrangement::BodyCentred));
+    let smoothed = Method::SurfaceNets(SurfaceNets::default().with_smoothing(1));
+    for method in [tetrahedra, smoothed] {
+        assert_eq!(
+            ChunkExtractor::try_new(&grid, &method, &settings).err(),
+            Some(ChunkError::NormalsNeedSamples)
+        );
+    }
+    let nets = Method::SurfaceNets(SurfaceNets::default());
+    let mut extractor = ChunkExtractor::try_new(&grid, &nets, &settings).unwrap();
+    extractor.warm_up(16).unwrap();
+    let field = from_fn(|[_, _, z]: [f32; 3]| 3.5 - z);
+    let found = extractor.extract(&field, grid.chunk([0; 3], 8), Control::default());
+    assert_eq!(found.err(), Some(ChunkError::NormalsNeedSamples));
+    let levels = LevelExtractor::try_new(&grid, &nets, &settings);
+    assert_eq!(levels.err(), Some(LevelError::Chunk(ChunkError::NormalsNeedSamples)));
 }

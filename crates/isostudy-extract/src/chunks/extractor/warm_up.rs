@@ -3,13 +3,14 @@
 use super::{ChunkExtractor, Control, Place};
 use crate::chunks::chunk::Chunk;
 use crate::chunks::error::ChunkError;
+use crate::source::NormalsOf;
 #[cfg(feature = "tetrahedra")]
 use crate::{
     clustering::guard::Guard,
     settings::{Clustering, Topology},
 };
 use glam::Vec3;
-use isostudy_field::StudyField;
+use isostudy_field::{StudyField, from_fn};
 
 impl ChunkExtractor {
     /// Makes room for windows with so many vertices and twice as many triangles, so that not even a surface larger than all
@@ -47,7 +48,14 @@ impl ChunkExtractor {
             radius: 0.4 * bounds.size().min_element(),
             isovalue: self.how.settings.isovalue,
         };
-        self.of_field(&ball, first, Control::default(), &mut Chunk::default())
+        if self.extractor.normals != NormalsOf::Samples {
+            return self.of_field(&ball, first, Control::default(), &mut Chunk::default());
+        }
+        let window = self.window(first)?.unwrap_or(first);
+        let layout = self.layout(window)?;
+        let mut samples = Vec::new();
+        layout.fill(&from_fn(|p: [f32; 3]| ball.sample(Vec3::from(p))), &mut samples);
+        self.of_samples((window, &samples), first, Control::default(), &mut Chunk::default())
     }
 
     /// Makes the tables of integrated clustering that are made otherwise when a point first needs them.

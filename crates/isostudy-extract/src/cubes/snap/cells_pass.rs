@@ -124,7 +124,7 @@ impl Chosen {
                     let numbered = |triangle: &[u8; 3]| triangle.map(|code| vertices[usize::from(code)]);
                     result.triangles.extend(patch.triangles.iter().map(numbered));
                     if let Some(trace) = &mut result.trace {
-                        trace.close_cell(grid.lattice, [x, y, z], result.triangles.len())?;
+                        trace.close_cell(grid.lattice.cell_number([x, y, z]), result.triangles.len())?;
                     }
                 }
             }

@@ -74,7 +74,7 @@ pub(super) fn triangulate_layer(
                 }
                 let triangles = result.triangles.len();
                 if let Some(trace) = &mut result.trace {
-                    trace.close_cell(&grid.lattice, [x, y, z], triangles)?;
+                    trace.close_cell(grid.lattice.cell_number([x, y, z]), triangles)?;
                 }
             }
         }

@@ -151,7 +151,7 @@ fn triangulate(points: &Points, trace: &mut Trace) -> Triangulation {
                 });
             }
         }
-        trace.close_cell(lattice, [x, y, z], result.triangles.len()).unwrap();
+        trace.close_cell(lattice.cell_number([x, y, z]), result.triangles.len()).unwrap();
     }
     result
 }

@@ -29,7 +29,16 @@ fn request<'a>(
     most_vertices: u32,
 ) -> Request<'a> {
     let (control, start) = (execution.into(), Moment::now());
-    Request { source, lattice, settings, control, most_vertices, with_normals: true, start }
+    Request {
+        source,
+        lattice,
+        settings,
+        control,
+        most_vertices,
+        normals: Default::default(),
+        part: None,
+        start,
+    }
 }
 
 fn tetrahedra_at(cut: &Cut, cell: [i8; 3]) -> impl Iterator<Item = [Step; 4]> + '_ {

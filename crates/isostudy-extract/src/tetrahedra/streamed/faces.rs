@@ -150,7 +150,7 @@ pub(super) fn triangulate_layer(
                 let Some(x) = column.checked_sub(grid.base_offset).filter(|&x| x < cells_x) else { continue };
                 pass.cell([x, y, z], column, result);
                 if let Some(trace) = &mut result.trace {
-                    trace.close_cell(&grid.lattice, [x, y, z], result.triangles.len())?;
+                    trace.close_cell(grid.lattice.cell_number([x, y, z]), result.triangles.len())?;
                 }
             }
         }
