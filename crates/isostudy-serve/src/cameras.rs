@@ -1,7 +1,7 @@
 //! From where participants looked at models that they turned.
 
-use crate::export;
 use isostudy_design::forms::KeyEntry;
+use isostudy_table::formula::escape;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
@@ -85,22 +85,25 @@ pub const HEADER: [&str; 10] = [
     "distance",
 ];
 
-/// `cameras.csv`: a row for each camera.
+/// `cameras.csv`: a row for each camera. No text is a formula to a spreadsheet; numbers are as they are, the negative ones too.
 pub fn csv(all: &[Tracked], key: &[KeyEntry]) -> String {
     let asked: HashMap<(usize, usize), &str> =
         key.iter().map(|entry| ((entry.form, entry.order), entry.question.as_str())).collect();
-    let rows: Vec<_> = all
-        .iter()
-        .flat_map(|of| {
+    let write = || -> Result<String, Box<dyn std::error::Error>> {
+        let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+        writer.write_record(HEADER)?;
+        for of in all {
             let question = asked.get(&(of.form, of.order as usize)).copied().unwrap_or_default();
-            let row = move |(t_ms, azimuth, elevation, distance)| {
-                let answer = (&of.participant, of.form, of.order, question, &of.stimulus);
-                (answer, of.track.hz, t_ms, azimuth, elevation, distance)
-            };
-            of.track.cameras().map(row)
-        })
-        .collect();
-    export::csv(&rows, &HEADER)
+            let texts = [of.participant.as_str(), question, of.stimulus.as_str()];
+            let [participant, question, stimulus] = texts.map(escape);
+            for (t_ms, azimuth, elevation, distance) in of.track.cameras() {
+                let answer = (&participant, of.form, of.order, &question, &stimulus);
+                writer.serialize((answer, of.track.hz, t_ms, azimuth, elevation, distance))?;
+            }
+        }
+        Ok(String::from_utf8(writer.into_inner()?)?)
+    };
+    write().expect("memory takes everything, and texts are UTF-8")
 }
 
 #[cfg(test)]
@@ -140,11 +143,11 @@ mod tests {
             stimulus: "tani".into(),
             track,
         };
-        let all = [of(2, track(&[0, 450, 222, 1000, 50, 465, 220, 900])), of(3, track(&[7, 0, 0, 1]))];
+        let all = [of(2, track(&[0, 450, 222, 1000, 50, 465, 220, 900])), of(3, track(&[7, -31, -900, 1]))];
         assert_eq!(
             csv(&all, &[]),
             "participant,form,order,question,stimulus,hz,t_ms,azimuth_deg,elevation_deg,distance\n\
-             ab,2,2,,tani,20.0,0,45.0,22.2,1.0\nab,2,2,,tani,20.0,50,46.5,22.0,0.9\nab,2,3,,tani,20.0,7,0.0,0.0,0.001\n"
+             ab,2,2,,tani,20.0,0,45.0,22.2,1.0\nab,2,2,,tani,20.0,50,46.5,22.0,0.9\nab,2,3,,tani,20.0,7,-3.1,-90.0,0.001\n"
         );
     }
 }
