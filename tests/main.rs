@@ -44,3 +44,4 @@ mod truths;
 mod turning;
 mod verify;
 mod viewer;
+mod ways;

@@ -108,7 +108,7 @@ export const begin = async (page) => {
   await page.getByRole('button', { name: 'Go on' }).click();
 };
 export const shown = (page) => page.locator('.pair').getAttribute('data-code');
-export const ready = (page) => page.locator('[data-choice="L"]:not([aria-disabled])').waitFor();
+export const ready = (page) => page.locator('.choices button:not([aria-disabled])').first().waitFor();
 
 /** Answers the pair on the screen, and returns what it was. */
 export async function answer(page, choice, how = 'mouse') {

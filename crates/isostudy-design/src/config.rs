@@ -13,6 +13,7 @@ mod pictures;
 mod responses;
 mod sweep;
 mod viewer;
+mod way;
 
 pub use crate::method::{BudgetSection, Quantity, StimulusLook};
 pub use about::{AboutKind, AboutSection, AboutTime};
@@ -21,7 +22,7 @@ pub use analysis::{
 };
 pub use field::{FieldSection, Inside, MeshSourceSection, PointKernel, PointNormals};
 pub use forms::{FormsSection, OrderRule, Panel, Presentation, ShownNames, SideRule, TrainingSection};
-pub(crate) use forms::{is_english_alone, is_false, languages};
+pub(crate) use forms::{is_english_alone, is_false, is_steps, languages, steps};
 pub use methods::{FactorSection, LevelSection, MethodSection, SpeltLevel};
 pub(crate) use objects::check_objects;
 pub use objects::{CameraSection, ObjectSection, RegionSection};
@@ -29,6 +30,8 @@ pub use pictures::{LightFollows, Look, ShadingSection, StillSection, TurntableSe
 pub use responses::{PairSection, ResponsesSection, SynonymsSection};
 pub use sweep::{Combine, RangeSection, Scale, SettingSection, SweepSection};
 pub use viewer::ViewerSection;
+pub use way::{AnswerKind, Way};
+pub(crate) use way::{ENDS, MOST_STEPS};
 
 use crate::method::{Arrangement, Clustering, ConfigurationId, MethodId};
 use serde::{Deserialize, Serialize};

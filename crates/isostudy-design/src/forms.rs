@@ -19,6 +19,13 @@
 //!   pairs of methods and objects. Controls take methods evenly, then objects. Both are the same for all participants
 //!   of a block: a place of the Latin square belongs to one question.
 //!
+//! Where people rate surfaces, or take the best of several, a block has single configurations or sets of them in the place of
+//! comparisons:
+//! - Ratings ask about every configuration of the comparisons once. Sets of an object's methods have each method equally often, to
+//!   within one, and each two methods together as evenly as a search finds.
+//! - Over participants, each configuration of a set is at each place equally often, to within one. A repeat shows it at other places.
+//! - There are no controls.
+//!
 //! # Not guaranteed
 //!
 //! - That somebody is asked enough for every [contrast](crate::contrast), such as the same pair of methods on two objects. Blocks
@@ -34,6 +41,7 @@
 mod about;
 mod file;
 mod order;
+mod several;
 mod sides;
 mod split;
 mod spoken;
@@ -43,6 +51,7 @@ mod stimuli;
 pub(crate) use about::texts as about_texts;
 pub use about::{AboutEntry, Answers, COMMENT};
 pub use file::{FormEntry, FormFile, KeyEntry, Quotas, Stimulus};
+pub(crate) use several::{count as several, fewest};
 pub use spoken::Language;
 
 use crate::config::{FormsSection, OrderRule, SideRule};
@@ -51,6 +60,7 @@ use crate::study::{Comparison, Study};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Why a participant is shown a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -75,10 +85,28 @@ pub struct Trial {
     pub question: String,
     /// Index into the study's comparisons, for comparisons and repeats.
     pub comparison: Option<usize>,
-    /// Shown on the left.
-    pub left: ConfigurationId,
-    /// Shown on the right.
-    pub right: ConfigurationId,
+    /// What is shown, left to right: two, or as many as the way to ask shows at once.
+    pub shown: Vec<ConfigurationId>,
+}
+
+impl Trial {
+    /// The left and the right one of a pair.
+    pub fn pair(&self) -> Option<[&ConfigurationId; 2]> {
+        match &self.shown[..] {
+            [left, right] => Some([left, right]),
+            _ => None,
+        }
+    }
+
+    /// Whether it asks about the same as another, on whatever sides.
+    fn asks_the_same(&self, other: &Self) -> bool {
+        let sorted = |of: &Self| {
+            let mut shown = of.shown.clone();
+            shown.sort_unstable();
+            shown
+        };
+        self.comparison == other.comparison && sorted(self) == sorted(other)
+    }
 }
 
 /// What one participant is shown.
@@ -92,6 +120,25 @@ pub struct Form {
     pub mirrored: bool,
     /// The trials in order, training first.
     pub trials: Vec<Trial>,
+}
+
+impl Form {
+    /// The study's comparisons that somebody who answers the form can be said to have judged, by their places: those that are asked;
+    /// those of which both sides are rated; or those of which both sides stand in one set.
+    pub fn comparisons(&self, study: &Study) -> BTreeSet<usize> {
+        let asked = || self.trials.iter().filter(|trial| trial.role == Role::Comparison);
+        if asked().any(|trial| trial.comparison.is_some()) {
+            return asked().filter_map(|trial| trial.comparison).collect();
+        }
+        let rated: Vec<&ConfigurationId> =
+            asked().filter(|trial| trial.shown.len() == 1).flat_map(|trial| &trial.shown).collect();
+        let judged = |comparison: &Comparison| {
+            let both = [&comparison.left, &comparison.right];
+            both.iter().all(|id| rated.contains(id))
+                || asked().any(|trial| both.iter().all(|id| trial.shown.contains(id)))
+        };
+        (0..study.comparisons.len()).filter(|&i| judged(&study.comparisons[i])).collect()
+    }
 }
 
 /// A study's questionnaire, from which forms are dealt.
@@ -114,6 +161,9 @@ impl<'a> Questionnaire<'a> {
     /// The questionnaire of a study; `None` if it plans no forms or compares nothing.
     pub fn of(study: &'a Study) -> Option<Self> {
         let section = study.file.forms.as_ref().filter(|_| !study.comparisons.is_empty())?;
+        if !section.way.is_of_pairs() {
+            return Some(Self { study, section, blocks: several::blocks(study, section) });
+        }
         let split = blocks(study, section);
         let repeated = repeated(study, section, &split);
         let controls = controls(study, section);
@@ -165,7 +215,11 @@ impl<'a> Questionnaire<'a> {
             }
         }
         if mirrored {
-            trials.iter_mut().for_each(|trial| std::mem::swap(&mut trial.left, &mut trial.right));
+            trials.iter_mut().for_each(|trial| trial.shown.reverse());
+        }
+        if self.section.way.is_best() && self.section.sides == SideRule::Balanced {
+            // Everything that is shown at once comes to each place in turn.
+            trials.iter_mut().for_each(|trial| several::turn(trial, turn));
         }
         trials.splice(0..0, self.training());
         Form { participant, block, mirrored, trials }
@@ -177,6 +231,7 @@ impl<'a> Questionnaire<'a> {
         let count = self.questions(participant);
         // Rows alternate between the two ways round; where their number is even, so do whole cycles.
         self.section.sides == SideRule::Balanced
+            && self.section.way.is_of_pairs()
             && (if count.is_multiple_of(2) { turn + turn / count } else { turn }) % 2 == 1
     }
 
@@ -185,38 +240,44 @@ impl<'a> Questionnaire<'a> {
         (0..self.section.participants as usize).map(|participant| self.form(participant)).collect()
     }
 
-    /// Every pair that some participant is shown, left and right, each once: comparisons as listed, then what else
-    /// forms need, in the order of blocks.
-    pub fn pairs(&self) -> Vec<(ConfigurationId, ConfigurationId)> {
-        let as_listed = self.study.comparisons.iter().map(|c| (c.left.clone(), c.right.clone()));
-        let mut pairs: Vec<_> = as_listed.collect();
-        let mut add = |left: &ConfigurationId, right: &ConfigurationId| {
-            let pair = (left.clone(), right.clone());
-            if !pairs.contains(&pair) {
-                pairs.push(pair);
+    /// Everything that some participant is shown at once, left to right, each once: of pairs the comparisons as listed, then what
+    /// else forms need, in the order of blocks.
+    pub fn pairs(&self) -> Vec<Vec<ConfigurationId>> {
+        let of_pairs = self.section.way.is_of_pairs();
+        let as_listed = self.study.comparisons.iter().map(|c| vec![c.left.clone(), c.right.clone()]);
+        let mut pairs: Vec<_> = as_listed.filter(|_| of_pairs).collect();
+        let mut add = |shown: &[ConfigurationId]| {
+            if !pairs.iter().any(|known| known == shown) {
+                pairs.push(shown.to_vec());
             }
         };
         for Block { comparisons, repeats, controls } in &self.blocks {
             for trial in [comparisons, repeats, controls].into_iter().flatten() {
-                add(&trial.left, &trial.right);
+                add(&trial.shown);
                 if self.section.sides == SideRule::Balanced {
-                    add(&trial.right, &trial.left);
+                    // The other way round, or with everything at each place.
+                    for turn in 1..trial.shown.len() {
+                        let mut turned = trial.shown.clone();
+                        turned.rotate_left(turn);
+                        add(&turned);
+                    }
                 }
             }
         }
-        self.training().iter().for_each(|trial| add(&trial.left, &trial.right));
+        self.training().iter().for_each(|trial| add(&trial.shown));
         pairs
     }
 
     fn training(&self) -> Vec<Trial> {
-        let trial = |(i, pair): (usize, &crate::config::TrainingSection)| Trial {
+        let shown =
+            |pair: &crate::config::TrainingSection| several::training(self.study, self.section.way, pair);
+        let trial = |(i, shown): (usize, Vec<ConfigurationId>)| Trial {
             role: Role::Training,
             question: format!("training-{}", i + 1),
             comparison: None,
-            left: pair.left.clone(),
-            right: pair.right.clone(),
+            shown,
         };
-        self.section.training.iter().enumerate().map(trial).collect()
+        self.section.training.iter().flat_map(shown).enumerate().map(trial).collect()
     }
 }
 
@@ -250,16 +311,17 @@ fn oriented(study: &Study, members: &[usize], swapped: &[bool]) -> Vec<Trial> {
     let trial = |(&i, &swapped): (&usize, &bool)| {
         let Comparison { question, left, right, .. } = &study.comparisons[i];
         let (left, right) = if swapped { (right, left) } else { (left, right) };
-        let (left, right) = (left.clone(), right.clone());
-        Trial { role: Role::Comparison, question: question.clone(), comparison: Some(i), left, right }
+        let shown = vec![left.clone(), right.clone()];
+        Trial { role: Role::Comparison, question: question.clone(), comparison: Some(i), shown }
     };
     members.iter().zip(swapped).map(trial).collect()
 }
 
 /// A comparison's repeat.
 fn again(of: &Trial) -> Trial {
-    let (left, right) = (of.right.clone(), of.left.clone());
-    Trial { role: Role::Repeat, question: format!("{}-r", of.question), left, right, ..of.clone() }
+    let mut again = Trial { role: Role::Repeat, question: format!("{}-r", of.question), ..of.clone() };
+    again.shown.rotate_left(1 % of.shown.len());
+    again
 }
 
 /// Which of each block's comparisons are repeated: over all blocks configurations as evenly as can be, then methods, then
@@ -289,9 +351,9 @@ fn controls(study: &Study, section: &FormsSection) -> Vec<Trial> {
     let mut random = random(study.file.study.seed, &[CONTROLS]);
     let chosen = spread::spread(section.controls as usize, &[pool], &sizes, &mut random);
     let control = |(n, i): (usize, usize)| {
-        let shown = study.configurations[i].id.clone();
+        let shown = vec![study.configurations[i].id.clone(); 2];
         let question = format!("control-{}", n + 1);
-        Trial { role: Role::Control, question, comparison: None, left: shown.clone(), right: shown }
+        Trial { role: Role::Control, question, comparison: None, shown }
     };
     chosen.into_iter().flatten().enumerate().map(control).collect()
 }
@@ -303,6 +365,7 @@ const CIRCLE: usize = 3;
 const SHUFFLED: usize = 4;
 const REPEATS: usize = 5;
 const BLOCKS: usize = 6;
+const SETS: usize = 7;
 
 fn random(seed: u64, parts: &[usize]) -> Pcg64 {
     // FNV-1a: any fixed mixing will do, as long as it is ours and never changes.

@@ -7,10 +7,11 @@
 mod names;
 mod notices;
 mod reach;
+mod several;
 mod stimuli;
 
 use crate::config::{OrderRule, SideRule};
-use crate::forms::{Form, Questionnaire, Role, Trial};
+use crate::forms::{Form, Questionnaire, Role};
 use crate::study::{Comparison, Study};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -187,18 +188,25 @@ pub fn lint(study: &Study) -> Vec<Fault> {
         return Vec::new();
     };
     let forms = questionnaire.planned();
-    let showings = Showings::of(study, &forms);
-    let even = (section.sides == SideRule::Balanced).then_some(2 * questionnaire.blocks());
-    let mut faults = showings.sides(study, even);
-    faults.extend(showings.appearances(study));
-    faults.extend(showings.connections(study));
+    let mut faults = Vec::new();
+    if section.way.is_of_pairs() {
+        let showings = Showings::of(study, &forms);
+        let even = (section.sides == SideRule::Balanced).then_some(2 * questionnaire.blocks());
+        faults.extend(showings.sides(study, even));
+        faults.extend(showings.appearances(study));
+        faults.extend(showings.connections(study));
+    } else {
+        faults.extend(several::faults(study, section.way, &forms));
+    }
     let mut none = |rule: Rule, key: &str, count: u32, role: Role| {
         if forms.iter().any(|form| form.trials.iter().all(|trial| trial.role != role)) {
             let evidence = format!("{key} = {count}, in forms of {} questions", questionnaire.questions(0));
             faults.push(Fault { rule, place: key.into(), evidence });
         }
     };
-    none(Rule::NoControls, "forms.controls", section.controls, Role::Control);
+    if section.way.is_of_pairs() {
+        none(Rule::NoControls, "forms.controls", section.controls, Role::Control);
+    }
     none(Rule::NoRepeats, "forms.repeats", section.repeats, Role::Repeat);
     if section.order == OrderRule::AsListed && forms.len() > 1 {
         let evidence = format!("{} forms, one order", forms.len());
@@ -244,8 +252,9 @@ impl<'a> Showings<'a> {
         let comparisons = vec![[0; 2]; study.comparisons.len()];
         let mut showings = Self { study, sides: BTreeMap::new(), comparisons };
         for form in forms {
-            for Trial { role, comparison, left, .. } in &form.trials {
-                let (Role::Comparison, Some(comparison)) = (role, *comparison) else { continue };
+            for trial in &form.trials {
+                let (Role::Comparison, Some(comparison)) = (trial.role, trial.comparison) else { continue };
+                let Some([left, _]) = trial.pair() else { continue };
                 let pair = method_pair(study, &study.comparisons[comparison]);
                 showings.sides.entry(pair).or_default()[usize::from(study.place(left.method) != pair.1)] += 1;
                 let swapped = *left != study.comparisons[comparison].left;

@@ -13,7 +13,9 @@ use crate::method::{ConfigurationId, Method};
 use crate::read::{parse_toml, read_table};
 use crate::study::{Comparison, Configuration, Group, Published, Study};
 use crate::wording::did_you_mean;
-use checks::{check_forms, check_primary, check_reference, check_sections, check_stills, check_stopping};
+use checks::{
+    check_forms, check_primary, check_reference, check_sections, check_shown, check_stills, check_stopping,
+};
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -105,6 +107,7 @@ impl Study {
         check_primary(&checker, &study)?;
         check_stopping(&checker, &study)?;
         check_reference(&checker, &study)?;
+        check_shown(&checker, &study)?;
         crate::sweep::check(&checker, &study)?;
         Ok(study)
     }

@@ -34,7 +34,8 @@ pub fn ballots(study: &Study, answers: &Responses) -> Vec<ShownBallot> {
                 answer.question as usize,
                 [items[answer.left as usize], items[answer.right as usize]],
                 outcome(answer.choice),
-            );
+            )
+            .by_much(answer.much);
             let listed = answer.left == answers.questions[answer.question as usize].left;
             if answers.sides_recorded || listed { ballot } else { turned(&ballot) }
         })
@@ -46,8 +47,7 @@ pub fn ballots(study: &Study, answers: &Responses) -> Vec<ShownBallot> {
 /// The same answer with the sides exchanged: where a file does not say which item was on which side, nobody may take the
 /// order in which it names them for one.
 pub fn turned(ballot: &ShownBallot) -> ShownBallot {
-    let sides = [ballot.right(), ballot.left()];
-    ShownBallot::new(ballot.participant(), ballot.question(), sides, ballot.outcome().swapped())
+    ballot.turned()
 }
 
 /// The same answers, in the same order, about the methods of each question: first the one that the study lists on the left,

@@ -45,6 +45,7 @@ pub mod series;
 pub mod sides;
 pub mod tally;
 pub mod tipping;
+pub mod ways;
 
 #[cfg(test)]
 pub mod fixture;

@@ -42,7 +42,8 @@ pub fn open_groups(answers: &Responses, reference: Option<&str>) -> Vec<BallotGr
         let group = group_of[answer.question as usize];
         let sides = [answer.left, answer.right].map(|item| places[group][item as usize]);
         let (participant, question) = (answer.participant as usize, answer.question as usize);
-        let ballot = ShownBallot::new(participant, question, sides, outcome(answer.choice));
+        let ballot =
+            ShownBallot::new(participant, question, sides, outcome(answer.choice)).by_much(answer.much);
         let ordered = answers.sides_recorded || sides[0] < sides[1];
         groups[group].ballots.push(if ordered { ballot } else { turned(&ballot) });
     }

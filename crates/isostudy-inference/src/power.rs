@@ -261,8 +261,16 @@ impl Setting {
         let questionnaire = Questionnaire::of(study)?;
         // Question, and whether its sides are as listed.
         let block = |block| -> Vec<(usize, bool)> {
-            let asked = questionnaire.form(block).trials.into_iter().filter(|t| t.role == Role::Comparison);
-            asked.filter_map(|t| t.comparison.map(|q| (q, t.left == study.comparisons[q].left))).collect()
+            let form = questionnaire.form(block);
+            let asked = form.trials.iter().filter(|t| t.role == Role::Comparison);
+            let pairs: Vec<(usize, bool)> = asked
+                .filter_map(|t| t.comparison.map(|q| (q, t.shown[0] == study.comparisons[q].left)))
+                .collect();
+            match pairs.is_empty() {
+                // Where nobody is asked about pairs, answers about two follow from others, and nothing has sides.
+                true => form.comparisons(study).into_iter().map(|question| (question, true)).collect(),
+                false => pairs,
+            }
         };
         let listed: Vec<Vec<(usize, bool)>> = (0..questionnaire.blocks()).map(block).collect();
         let questions_of = |asked: &Vec<(usize, bool)>| asked.iter().map(|&(question, _)| question).collect();

@@ -20,6 +20,8 @@ pub struct Recorded<'a> {
     objects: Vec<String>,
     sides_recorded: bool,
     shown_ms: Option<f64>,
+    /// Whether nobody could answer "no preference".
+    forced: bool,
     /// What the study knows of sides, where the file tells them itself.
     dealt: Option<Dealt<'a>>,
 }
@@ -60,6 +62,7 @@ impl<'a> Recorded<'a> {
             questions: answers.questions.iter().map(|question| question.id.clone()).collect(),
             objects: study.file.objects.iter().map(|object| object.name.clone()).collect(),
             sides_recorded: answers.sides_recorded,
+            forced: study.file.forms.as_ref().is_some_and(|forms| !forms.way.has_ties()),
             shown_ms: Some(declared.map_or(turn_ms, |seconds| 1000.0 * seconds)),
         }
     }
@@ -85,6 +88,7 @@ impl<'a> Recorded<'a> {
             questions: answers.questions.iter().map(|question| question.id.clone()).collect(),
             objects,
             sides_recorded: answers.sides_recorded,
+            forced: false,
             shown_ms: shown_s.map(|seconds| 1000.0 * seconds),
             dealt: None,
         }
@@ -102,6 +106,7 @@ impl<'a> Recorded<'a> {
             scenes: &self.scenes,
             shown_ms: self.shown_ms,
             sides_unknown: !self.sides_recorded,
+            forced: self.forced,
         }
     }
 

@@ -23,6 +23,7 @@ use crate::screened::{self, Respondent, WithoutBreakers};
 use crate::screens::{self, Compared, Turned};
 use crate::sides::Sides;
 use crate::tipping::Undone;
+use crate::ways::{self, OfGroup};
 use conclusions::{Conclusion, Conclusions};
 use isostudy_design::Study;
 use isostudy_design::contrast::Over;
@@ -31,7 +32,7 @@ use isostudy_statistics::{DeclaredBallot, ShownBallot, screening_with};
 use isostudy_timing::beside_other_work;
 use rayon::prelude::*;
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What a study's answers, meshes and times show.
 pub struct Results<'a> {
@@ -127,6 +128,8 @@ pub struct Preferences<'a> {
     pub models: Vec<GroupModel<'a>>,
     /// The items of each group on one scale.
     pub scales: Vec<GroupScale<'a>>,
+    /// Models of the way in which people were asked, where answers say more than which of two was chosen.
+    pub ways: Vec<OfGroup<'a>>,
     /// How far people agree about all questions, then about each group of a study's.
     pub agreement: Vec<Agreement>,
     /// Everything that was answered, and how.
@@ -169,6 +172,7 @@ impl<'a> Preferences<'a> {
             study: Some(study),
             responses: &answered.responses,
             excluded: answered.excluded.len(),
+            leaves_out: &answered.excluded,
             shown: Cow::Borrowed(&answered.shown),
             declared: Cow::Borrowed(&answered.declared),
             groups,
@@ -186,6 +190,7 @@ impl<'a> Preferences<'a> {
             study: None,
             responses,
             excluded: 0,
+            leaves_out: &NOBODY,
             declared: shown.iter().map(ShownBallot::by_item).collect(),
             shown: Cow::Owned(shown),
             groups,
@@ -247,12 +252,17 @@ struct Base<'a> {
     study: Option<&'a Study>,
     responses: &'a Responses,
     excluded: usize,
+    /// Who that is.
+    leaves_out: &'a BTreeSet<usize>,
     shown: Cow<'a, [ShownBallot]>,
     declared: Cow<'a, [DeclaredBallot]>,
     groups: &'a [BallotGroup],
     hypotheses: Cow<'a, [Hypothesis]>,
     recorded: Recorded<'a>,
 }
+
+/// Without a study nobody is left out.
+static NOBODY: BTreeSet<usize> = BTreeSet::new();
 
 impl<'a> Base<'a> {
     /// `probed` are the groups that probes look at.
@@ -261,7 +271,8 @@ impl<'a> Base<'a> {
         probed: &[BallotGroup],
         without: impl Fn(&[Respondent]) -> Vec<WithoutBreakers> + Sync,
     ) -> Preferences<'a> {
-        let Self { study, responses, excluded, shown, declared, groups, hypotheses, recorded } = self;
+        let Self { study, responses, excluded, leaves_out, shown, declared, groups, hypotheses, recorded } =
+            self;
         let people = || {
             let protocol = recorded.protocol();
             let seen = screening_with(recorded.ballots(), &protocol);
@@ -313,6 +324,10 @@ impl<'a> Base<'a> {
             robustness,
             models,
             scales,
+            ways: match study.filter(|_| !responses.judged.is_empty()) {
+                Some(study) => ways::of_judged(study, responses, leaves_out, groups),
+                None => ways::of_steps(groups),
+            },
             agreement,
             recorded,
             without_one,

@@ -149,6 +149,26 @@ impl Animation {
         Ok(Animation { width: self.width * 2, frames, palette: self.palette.clone(), ..*self })
     }
 
+    /// All of them side by side from left to right, edge to edge; `None` of none.
+    ///
+    /// # Errors
+    /// As [`side_by_side`](Self::side_by_side).
+    pub fn in_a_row(all: &[Animation]) -> Result<Option<Animation>, AnimationError> {
+        let Some((first, others)) = all.split_first() else { return Ok(None) };
+        others.iter().try_for_each(|other| first.check_pairs_with(other))?;
+        let width = first.width as usize;
+        let frame = |number: usize| {
+            let mut row = Vec::with_capacity(all.len() * first.frames[number].len());
+            for y in 0..first.height as usize {
+                all.iter().for_each(|one| row.extend_from_slice(&one.frames[number][y * width..][..width]));
+            }
+            row
+        };
+        let frames = (0..first.frames.len()).into_par_iter().map(frame).collect();
+        let width = first.width * all.len() as u32;
+        Ok(Some(Animation { width, frames, palette: first.palette.clone(), ..*first }))
+    }
+
     /// Every pixel as `factor` by `factor` pixels (nearest neighbour).
     ///
     /// # Panics

@@ -24,6 +24,7 @@ mod sides;
 mod summary;
 mod tipping;
 mod told;
+mod ways;
 mod worths;
 
 pub use crate::standing::Standing;
@@ -187,6 +188,7 @@ fn lead(evidence: &Evidence<'_>) -> Vec<String> {
             .and_then(|study| asked::instruction(study))
             .map(|instruction| format!("They were asked this: {}", asked::ended(instruction))),
     );
+    lead.extend(evidence.study.and_then(ways::asked));
     lead.extend(evidence.assumptions.iter().cloned());
     lead.push(
         format!(
@@ -273,12 +275,22 @@ impl Builder {
         }
         let mut scale = self.figures(&["worths"]);
         scale.extend(worths::findings(evidence));
+        scale.extend(ways::findings(evidence));
         if let Some(preferences) = evidence.preferences {
             let found = attributes::findings(&preferences.attributed, evidence.rules().level);
             scale.extend(found.into_iter().map(Block::Finding));
         }
         self.section("worths", "How much each is liked, on one scale", scale);
-        self.add_tables(&["scale", "differences", "subgroups", "covariates", "fit", "worths", "models"]);
+        self.add_tables(&[
+            "scale",
+            "differences",
+            "subgroups",
+            "covariates",
+            "ways",
+            "fit",
+            "worths",
+            "models",
+        ]);
         let mut glance = self.figures(&["contrasts"]);
         glance.extend(preference::findings(evidence));
         self.section("preferences", "What was preferred to what", glance);

@@ -24,6 +24,7 @@ pub(crate) mod scale;
 pub(crate) mod screened;
 pub(crate) mod screens;
 mod stored;
+mod ways;
 
 use isostudy_inference::{Preferences, Results};
 use isostudy_table::Table;
@@ -62,6 +63,7 @@ pub(crate) fn of_preferences(preferences: &Preferences<'_>) -> Vec<Table> {
     tables.push(contrasts::tests(&preferences.hypotheses, &preferences.robustness));
     tables.extend(preferences.study.map(|study| omnibus::omnibus(study, &preferences.omnibus)));
     tables.extend(models::model_tables(&preferences.models, preferences.responses.sides_recorded));
+    tables.push(ways::ways(&preferences.ways, &preferences.models));
     tables.extend(scale::tables(&preferences.scales));
     tables.extend(attributes::tables(&preferences.attributed));
     tables.extend(preferences.study.map(|study| agreement::agreement(study, &preferences.agreement)));

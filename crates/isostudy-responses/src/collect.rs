@@ -1,13 +1,15 @@
 //! Gathers answers from any reader and checks what holds for all of them.
 
 use crate::address;
-use crate::choice::Choice;
+use crate::choice::Step;
 use crate::error::{Fault, UnknownCell, shorten};
 use crate::mapping::{Mapping, Unknown};
 use crate::plan::Plan;
 use crate::report::{Kind, Report};
 use crate::screen::{Screen, ScreenId};
 use crate::value::{Answer, Participant, Question, StimulusId};
+use crate::words::is_of;
+use isostudy_design::config::Way;
 use isostudy_design::forms::Role;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -38,7 +40,7 @@ impl Index {
 
 /// What a cell with an answer says.
 pub(crate) enum Reply {
-    Choice(Choice),
+    Step(Step),
     Blank,
     /// Not an answer, and to be left out or refused.
     Unknown,
@@ -78,6 +80,8 @@ pub(crate) struct Collector<'a> {
     pub(crate) report: &'a mut Report,
     /// Whether the file alone says what was asked.
     open: bool,
+    /// How the study asks, if it says so.
+    way: Option<Way>,
     pub(crate) naming: Ids,
     participants: Vec<Participant>,
     by_id: HashMap<String, u32>,
@@ -110,7 +114,7 @@ pub(crate) struct Collector<'a> {
     missing: Option<(Place, u64)>,
     unknown: Vec<UnknownCell>,
     /// What cells were found to mean; there are few different ones.
-    replies: HashMap<String, Option<(Choice, bool)>>,
+    replies: HashMap<String, Option<(Step, bool)>>,
 }
 
 impl<'a> Collector<'a> {
@@ -123,6 +127,7 @@ impl<'a> Collector<'a> {
             mapping,
             report,
             open: plan.is_none(),
+            way: plan.and_then(Plan::way),
             naming: Ids::OnePair,
             participants: Vec::new(),
             by_id: HashMap::new(),
@@ -163,9 +168,11 @@ impl<'a> Collector<'a> {
             Some(found) => *found,
             None => {
                 let plain = cell.trim_end().trim_end_matches(';');
-                let found = self.mapping.words.choice(plain).map(|choice| {
+                let step = self.mapping.words.step(plain);
+                let given = step.filter(|&step| self.way.is_none_or(|way| is_of(step, way)));
+                let found = given.map(|step| {
                     // What is the same but for case stands there literally.
-                    (choice, plain != cell || crate::words::normalise(cell) != cell.to_lowercase())
+                    (step, plain != cell || crate::words::normalise(cell) != cell.to_lowercase())
                 });
                 if self.replies.len() < REMEMBERED {
                     self.replies.insert(cell.to_owned(), found);
@@ -174,12 +181,12 @@ impl<'a> Collector<'a> {
             }
         };
         match found {
-            Some((choice, repaired)) => {
+            Some((step, repaired)) => {
                 if repaired {
-                    let action = format!("read as {}", choice.name());
+                    let action = format!("read as {}", step.name());
                     self.report.cell(Kind::Repaired, place.row, place.column, cell, action);
                 }
-                Reply::Choice(choice)
+                Reply::Step(step)
             }
             None => {
                 if self.mapping.unknown == Unknown::LeaveOut {

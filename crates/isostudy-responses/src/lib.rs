@@ -32,13 +32,14 @@ mod plan;
 mod read;
 mod report;
 mod screen;
+mod several;
 mod shown;
 mod sides;
 mod value;
 mod words;
 mod write;
 
-pub use choice::Choice;
+pub use choice::{Choice, Step};
 pub use collect::MOST_COUNTED;
 pub use decode::archive::LARGEST_ARCHIVE;
 pub use error::{Fault, ReadError, UnknownCell};
@@ -51,8 +52,11 @@ pub use plan::{Plan, PlannedPair};
 pub use read::{LARGEST_FILE, Reading, parse, read};
 pub use report::{Kind, Remark, Report};
 pub use screen::{SCREEN_COLUMNS, Screen, ScreenId};
+pub use several::{SHOWN_COLUMN, read_several};
 pub use sides::SidesSource;
-pub use value::{Answer, Participant, PersonColumn, Question, Responses, StimulusId, UnknownStimuli};
+pub use value::{
+    Answer, Judged, Participant, PersonColumn, Question, Responses, StimulusId, UnknownStimuli, Verdict,
+};
 pub use words::{Words, normalise};
 pub use write::{
     LONG_WRITTEN, LONG_WRITTEN_WITH_SCREENS, Ties, WriteError, Written, write_arenakit, write_long,

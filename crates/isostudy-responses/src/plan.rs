@@ -4,6 +4,7 @@ use crate::shown::{Sheet, Shown};
 use crate::value::Question;
 use crate::words::normalise;
 use isostudy_design::Study;
+use isostudy_design::config::Way;
 use std::collections::HashMap;
 
 /// The questions that were asked. Files whose columns are questions cannot be read without.
@@ -17,6 +18,8 @@ pub struct Plan {
     /// By the id without regard to case and space; none where that is two questions.
     by_folded_id: HashMap<String, Option<u32>>,
     shown: Shown,
+    /// How a study asks; none where nobody says it.
+    way: Option<Way>,
 }
 
 /// What the id of a repeat has behind that of its question, and that of training before its number, in a study's forms.
@@ -58,12 +61,13 @@ impl Plan {
         };
         let questions: Vec<Question> = study.comparisons.iter().map(question).collect();
         let shown = Shown::of_study(study, &questions);
-        Self::new(
+        let plan = Self::new(
             study.configurations.iter().map(|c| c.id.to_string()).collect(),
             study.configurations.iter().map(|c| c.id.method.to_string()).collect(),
             questions,
             shown,
-        )
+        );
+        Self { way: study.file.forms.as_ref().map(|forms| forms.way), ..plan }
     }
 
     /// Declared pairs; items are numbered as they come. Everybody was shown them with these sides.
@@ -100,7 +104,7 @@ impl Plan {
             let one = by_folded_id.entry(normalise(&question.id)).or_insert(Some(i as u32));
             *one = one.filter(|&first| first == i as u32);
         }
-        Self { items, short_names, questions, by_id, by_folded_id, shown }
+        Self { items, short_names, questions, by_id, by_folded_id, shown, way: None }
     }
 
     /// The items.
@@ -116,6 +120,11 @@ impl Plan {
     /// The questions.
     pub fn questions(&self) -> &[Question] {
         &self.questions
+    }
+
+    /// How the study's forms ask, if it has any.
+    pub(crate) fn way(&self) -> Option<Way> {
+        self.way
     }
 
     /// Whether everybody is shown the listed sides, so that a file may leave them out.

@@ -41,8 +41,15 @@ impl Shown {
         let sides = |left: &ConfigurationId, right: &ConfigurationId| [numbers[left], numbers[right]];
         let mut shown = Self::as_declared();
         let stimuli = study.stimuli().into_iter();
-        shown.codes = stimuli.map(|s| (s.code, sides(&s.left, &s.right))).collect();
-        let Some((forms, section)) = Questionnaire::of(study).zip(study.file.forms.as_ref()) else {
+        // What is shown one at a time, or several at once, has no sides.
+        shown.codes = stimuli
+            .filter_map(|stimulus| {
+                let [left, right] = stimulus.pair()?;
+                Some((stimulus.code.clone(), sides(left, right)))
+            })
+            .collect();
+        let section = study.file.forms.as_ref().filter(|section| section.way.is_of_pairs());
+        let Some((forms, section)) = Questionnaire::of(study).zip(section) else {
             return shown;
         };
         shown.as_listed = section.sides == SideRule::AsListed;
@@ -82,7 +89,8 @@ impl Shown {
     ) -> Vec<(u32, [u32; 2])> {
         let mut trials = Vec::new();
         for trial in &form.trials {
-            let [left, right] = sides(&trial.left, &trial.right);
+            let Some([left, right]) = trial.pair() else { continue };
+            let [left, right] = sides(left, right);
             let number = match (trial.role, trial.comparison) {
                 (Role::Training, _) => continue,
                 (Role::Comparison, Some(comparison)) => comparison as u32,

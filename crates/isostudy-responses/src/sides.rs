@@ -16,6 +16,8 @@ pub enum SidesSource {
     FromForms,
     /// The file has none of these, and everybody was shown the sides that the study lists.
     AsListed,
+    /// There were none: surfaces were shown one at a time, or several at once.
+    NoSides,
     /// Nobody knows.
     #[default]
     Unknown,
@@ -29,6 +31,7 @@ impl SidesSource {
             Self::FromCodeNames => "from code names",
             Self::FromForms => "from form numbers",
             Self::AsListed => "as listed",
+            Self::NoSides => "none",
             Self::Unknown => "unknown",
         }
     }
@@ -47,6 +50,9 @@ impl SidesSource {
             }
             Self::AsListed => {
                 "The file does not name sides. They are taken as listed, because everybody was shown the listed sides."
+            }
+            Self::NoSides => {
+                "Nobody compared a left side with a right one. Answers about two items follow from ratings, or from what was taken of several."
             }
             Self::Unknown => "The file does not say which item was on which side.",
         }

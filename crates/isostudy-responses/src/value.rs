@@ -1,6 +1,6 @@
 //! Answers, read and checked: one value an answer, whatever file they came from.
 
-use crate::choice::Choice;
+use crate::choice::{Choice, Step};
 use crate::error::{number_of, shorten};
 use crate::screen::{Screen, ScreenId};
 use crate::sides::SidesSource;
@@ -37,6 +37,8 @@ pub struct Responses {
     pub stimuli: Vec<String>,
     /// On what answers were given, where the file says it; neighbours on one screen share one.
     pub screens: Vec<Screen>,
+    /// What people answered who did not compare two; their answers above follow from it.
+    pub judged: Vec<Judged>,
     /// What is said of people beside their answers, where a study asks for it; reading answers leaves it empty.
     pub people: Vec<PersonColumn>,
     /// Answers whose participant the file does not name. Each of them has a participant of its own.
@@ -123,6 +125,8 @@ pub struct Answer {
     pub right: u32,
     /// What was chosen.
     pub choice: Choice,
+    /// Whether it is much better, where people answered in five steps.
+    pub much: bool,
     /// At which place in the session it was shown, if recorded.
     pub order: Option<u32>,
     /// Milliseconds until the answer, if recorded; finite and not negative.
@@ -131,6 +135,30 @@ pub struct Answer {
     pub stimulus: Option<StimulusId>,
     /// On what it was given, if recorded: see [`Responses::screen`].
     pub screen: Option<ScreenId>,
+}
+
+/// One answer about one item, or about several.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Judged {
+    /// Index of the participant.
+    pub participant: u32,
+    /// The items that were shown, in the order of their places.
+    pub shown: Vec<u32>,
+    /// What was answered.
+    pub verdict: Verdict,
+    /// Whether it asks again, to check an answer.
+    pub is_repeat: bool,
+    /// At which place in the session it was shown.
+    pub order: u32,
+}
+
+/// What was answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The step of the scale that the one item got.
+    Rated(u8),
+    /// The item that was taken; `None` is none of them.
+    Taken(Option<u32>),
 }
 
 /// The number of a name in [`Responses::stimuli`].
@@ -161,11 +189,17 @@ impl Answer {
             left,
             right,
             choice,
+            much: false,
             order: None,
             rt_ms: None,
             stimulus: None,
             screen: None,
         }
+    }
+
+    /// The answer in up to five steps, as it was shown.
+    pub fn step(&self) -> Step {
+        Step { choice: self.choice, much: self.much }
     }
 
     /// The item that was chosen; `None` is no preference.
@@ -193,6 +227,11 @@ impl Responses {
     /// somebody did not give, nor of anything else within a person.
     pub fn names_nobody(&self) -> bool {
         !self.answers.is_empty() && self.without_participant == self.answers.len() as u64
+    }
+
+    /// Whether anybody said that something is much better: people answered in five steps.
+    pub fn has_steps(&self) -> bool {
+        self.answers.iter().any(|answer| answer.much)
     }
 
     /// What was assumed where the file does not say it, as sentences for a report: how sides are known, whether
@@ -223,6 +262,11 @@ impl Responses {
     pub fn declared_choice(&self, answer: &Answer) -> Choice {
         let question = &self.questions[answer.question as usize];
         if answer.left == question.left { answer.choice } else { answer.choice.swapped() }
+    }
+
+    /// As [`Responses::declared_choice`], in up to five steps.
+    pub fn declared_step(&self, answer: &Answer) -> Step {
+        Step { choice: self.declared_choice(answer), much: answer.much }
     }
 }
 

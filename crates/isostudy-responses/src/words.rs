@@ -1,6 +1,7 @@
 //! What people's forms call the three answers.
 
-use crate::choice::Choice;
+use crate::choice::{Choice, Step};
+use isostudy_design::config::Way;
 use std::collections::HashMap;
 
 /// Words for left, no preference and right, by language; a study declares its own on top. Codes such as 1, 2, 3 are not
@@ -127,7 +128,7 @@ const BUILT_IN: [(&str, [&[&str]; 3]); 8] = [
 /// Words and the choices that they mean.
 #[derive(Debug, Clone)]
 pub struct Words {
-    known: HashMap<String, Choice>,
+    known: HashMap<String, Step>,
     declared: usize,
     /// A word that stands for no answer.
     blank: Option<String>,
@@ -138,8 +139,11 @@ impl Default for Words {
         let mut known = HashMap::new();
         for (_, lists) in BUILT_IN {
             for (choice, words) in Choice::ALL.into_iter().zip(lists) {
-                known.extend(words.iter().map(|word| (word.to_string(), choice)));
+                known.extend(words.iter().map(|word| (word.to_string(), choice.into())));
             }
+        }
+        for step in Step::ALL.into_iter().filter(|step| step.much) {
+            known.extend([step.code(), step.name()].map(|word| (normalise(word), step)));
         }
         Self { known, declared: 0, blank: None }
     }
@@ -151,10 +155,10 @@ impl Words {
     /// # Errors
     /// The word that stands for two choices.
     pub fn declare(&mut self, lists: [&[String]; 3]) -> Result<(), String> {
-        let mut own: HashMap<String, Choice> = HashMap::new();
+        let mut own: HashMap<String, Step> = HashMap::new();
         for (choice, words) in Choice::ALL.into_iter().zip(lists) {
             for word in words {
-                if own.insert(normalise(word), choice).is_some_and(|other| other != choice) {
+                if own.insert(normalise(word), choice.into()).is_some_and(|other| other.choice != choice) {
                     return Err(word.clone());
                 }
             }
@@ -181,22 +185,38 @@ impl Words {
             || self.blank.as_ref().is_some_and(|word| cell.len() < 99 && normalise(cell) == *word)
     }
 
-    /// The choice that a cell means. Case, runs of space, non-breaking space, curly quotes and a trailing ` *` do not matter.
+    /// The choice that a cell means, of five steps the side: see [`Words::step`].
     pub fn choice(&self, cell: &str) -> Option<Choice> {
+        self.step(cell).map(|step| step.choice)
+    }
+
+    /// The answer that a cell means. Case, runs of space, non-breaking space, curly quotes and a trailing ` *` do not matter.
+    pub fn step(&self, cell: &str) -> Option<Step> {
         // No word is as long as this, and a cell may be.
         const LONGEST: usize = 4096;
         if cell.len() > LONGEST { None } else { self.known.get(&normalise(cell)).copied() }
     }
 
-    /// What is known, for messages.
-    pub(crate) fn summary(&self) -> String {
+    /// What is known, for messages; of a study, in its way to ask.
+    pub(crate) fn summary(&self, way: Option<Way>) -> String {
         let languages: Vec<&str> = BUILT_IN[1..].iter().map(|(language, _)| *language).collect();
         let declared = match self.declared {
             0 => String::new(),
             n => format!(", {n} declared"),
         };
-        format!("L, NP, R, left, none, right, words in {}{declared}", languages.join(", "))
+        let steps = Step::ALL.into_iter().filter(|&step| match way {
+            Some(way) => is_of(step, way),
+            None => !step.much,
+        });
+        let (codes, names): (Vec<&str>, Vec<&str>) = steps.map(|step| (step.code(), step.name())).unzip();
+        let (codes, names) = (codes.join(", "), names.join(", "));
+        format!("{codes}, {names}, words in {}{declared}", languages.join(", "))
     }
+}
+
+/// Whether people who are asked in this way can answer so.
+pub(crate) fn is_of(step: Step, way: Way) -> bool {
+    way.answers().iter().any(|of| of.code == step.code())
 }
 
 /// Whether a cell holds what R writes for a missing value.
@@ -259,6 +279,9 @@ mod tests {
         }
         for cell in ["", "1", "A", "vlevo", "left right", &"left ".repeat(10_000)] {
             assert_eq!(words.choice(cell), None, "{cell}");
+        }
+        for (cell, value) in [("LL", 2), ("l", 1), ("none", 0), ("R", -1), (" rr ", -2), ("Much_Right", -2)] {
+            assert_eq!(words.step(cell).map(Step::value), Some(value), "{cell}");
         }
     }
 

@@ -101,7 +101,7 @@ pub fn write_long(responses: &Responses, out: impl Write) -> Result<Written, Wri
             &question.group,
             left,
             right,
-            answer.choice.name(),
+            answer.step().name(),
             &rt_ms,
             role_name(question.role),
             responses.stimulus(answer).unwrap_or(""),

@@ -1,4 +1,4 @@
-// A pair on the screen: both halves of one file, side by side or one over the other, as large as there is room.
+// A pair on the screen, or as many surfaces as are shown at once: all of one file, in rows, as large as there is room.
 'use strict';
 
 /**
@@ -13,13 +13,23 @@ window.isostudyPair = async (study, text, file, box, make, changed, events) => {
   const [WIDTH, HEIGHT] = study.surface.map((pixels) => pixels * study.page_scale);
   // After so long a video whose bytes are all here is taken not to play.
   const NO_FRAME_MS = 5000;
-  const NAMES = [text('upper'), text('lower')];
   const isModel = file.kind === 'model';
+  // Two have sides; others have numbers.
+  const COUNT = { ratings: 1, 'best-of-3': 3, 'best-of-4': 4 }[study.way] ?? 2;
+  const PAIR = COUNT === 2;
+  const NAMES = PAIR ? [text('upper'), text('lower')] : ['first', 'second', 'third', 'fourth'].map((key) => text(key));
+  const SAID = {
+    turning: ['left_turning', 'right_turning', 'number_turning'],
+    stopped: ['left_stopped', 'right_stopped', 'number_stopped'],
+    surface: ['left_surface', 'right_surface', 'number_surface'],
+  };
+  const said = (i, what) => text(SAID[what][PAIR ? i : 2], { number: i + 1 });
   const video = file.kind === 'gif' || isModel ? null : make('video', { muted: true, loop: true, playsInline: true, preload: 'auto', className: 'source', 'aria-hidden': 'true' });
 
-  const halves = ['left', 'right'].map((side, i) => {
-    const moving = video || isModel ? null : make('img', { alt: text(`${side}_turning`), draggable: false, hidden: true });
-    const still = make('canvas', { role: 'img', 'aria-label': text(video || isModel ? `${side}_surface` : `${side}_stopped`) });
+  const halves = Array.from({ length: COUNT }, (_, i) => {
+    const moving = video || isModel ? null : make('img', { alt: said(i, 'turning'), draggable: false, hidden: true });
+    if (moving) [moving.style.width, moving.style.left] = [`${100 * COUNT}%`, `${-100 * i}%`];
+    const still = make('canvas', { role: 'img', 'aria-label': said(i, video || isModel ? 'surface' : 'stopped') });
     const name = make('span', { className: 'name', 'aria-hidden': 'true' }, NAMES[i]);
     return { moving, still, element: make('div', { className: 'half' }, ...(moving ? [moving] : []), still, name) };
   });
@@ -41,11 +51,12 @@ window.isostudyPair = async (study, text, file, box, make, changed, events) => {
     await Promise.race([there, never]);
   }
 
-  /** Copies what `source` shows now, a half each. */
-  function draw(source, width, height) {
+  /** Copies what `source` shows now, a part each. */
+  function draw(source, all, height) {
+    const width = all / COUNT;
     halves.forEach(({ still }, i) => {
-      if (still.width !== width / 2 || still.height !== height) [still.width, still.height] = [width / 2, height];
-      still.getContext('2d').drawImage(source, (i * width) / 2, 0, width / 2, height, 0, 0, width / 2, height);
+      if (still.width !== width || still.height !== height) [still.width, still.height] = [width, height];
+      still.getContext('2d').drawImage(source, i * width, 0, width, height, 0, 0, width, height);
     });
   }
 
@@ -75,6 +86,8 @@ window.isostudyPair = async (study, text, file, box, make, changed, events) => {
     box.setAttribute('aria-label', text('turn_pair'));
   }
   box.classList.toggle('enlarged', study.page_scale > 1 && !isModel);
+  box.classList.toggle('several', !PAIR);
+  box.classList.toggle('named', COUNT > 2);
   box.replaceChildren(...halves.map((half) => half.element), ...(video ? [video] : []));
   if (video) {
     await loaded(video, 'loadedmetadata');
@@ -99,14 +112,19 @@ window.isostudyPair = async (study, text, file, box, make, changed, events) => {
     box.style.maxHeight = '';
     const [width, height] = [box.clientWidth, box.clientHeight];
     const most = whole ? Infinity : MOST;
-    const beside = Math.min(width / 2 / WIDTH, height / HEIGHT, most);
-    const over = Math.min(width / WIDTH, (height - 4) / 2 / HEIGHT, most);
-    stacked = over > beside;
-    const scale = Math.max(stacked ? over : beside, 0);
-    const [w, h] = [Math.floor(WIDTH * scale), Math.floor(HEIGHT * scale)];
+    // In as many columns as make them largest; of equals the more.
+    const scales = Array.from({ length: COUNT }, (_, less) => {
+      const columns = COUNT - less;
+      const rows = Math.ceil(COUNT / columns);
+      return { columns, rows, scale: Math.min((width / columns - (PAIR ? 0 : 4)) / WIDTH, (height - 4 * (rows - 1)) / rows / HEIGHT, most) };
+    });
+    const { columns, rows, scale } = scales.reduce((best, one) => (one.scale > best.scale ? one : best));
+    stacked = rows > 1;
+    const [w, h] = [Math.max(Math.floor(WIDTH * scale), 0), Math.max(Math.floor(HEIGHT * scale), 0)];
     for (const { element } of halves) [element.style.width, element.style.height] = [`${w}px`, `${h}px`];
-    box.classList.toggle('stacked', stacked);
-    needed = stacked ? 2 * h + 4 : h;
+    box.classList.toggle('stacked', stacked && PAIR);
+    if (!PAIR) box.style.gridTemplateColumns = `repeat(${columns}, ${w}px)`;
+    needed = rows * h + 4 * (rows - 1);
     if (!whole) box.style.maxHeight = `${needed}px`;
     const was = surface;
     [surface, high] = [w, h];

@@ -1,14 +1,22 @@
-// One question: a pair, three answers, and when they can be given.
+// One question: a pair, its answers, and when they can be given.
 'use strict';
 
 /** `page` has what the questionnaire shares: study, text, loading, make, say, heading, show and touch. */
 window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch }) => {
-  const CHOICES = ['L', 'NP', 'R'];
-  // Keys of their names, side by side and one over the other.
-  const BESIDE = ['left', 'none', 'right'];
-  const STACKED = ['upper', 'none_stacked', 'lower'];
-  // The three keys of each answer: by number, and by the arrow that points to it.
-  const KEYS = [['1', 'ArrowLeft'], ['2', 'ArrowDown'], ['3', 'ArrowRight']];
+  // The answers of each way to ask: code, keys of its names side by side and one over the other, the arrow that points to it.
+  const ANSWERS = {
+    pairs: [['L', 'left', 'upper', 'ArrowLeft'], ['NP', 'none', 'none_stacked', 'ArrowDown'], ['R', 'right', 'lower', 'ArrowRight']],
+    forced: [['L', 'left', 'upper', 'ArrowLeft'], ['R', 'right', 'lower', 'ArrowRight']],
+    graded: [['LL', 'left_much', 'upper_much'], ['L', 'left_better', 'upper_better'], ['NP', 'equal', 'equal_stacked'],
+      ['R', 'right_better', 'lower_better'], ['RR', 'right_much', 'lower_much']],
+    ratings: Array.from({ length: study.steps ?? 0 }, (_, i) => [String(i + 1)]),
+  }[study.way ?? 'pairs'] ?? [...['first', 'second', 'third', 'fourth'].slice(0, study.way === 'best-of-3' ? 3 : 4).map((key, i) => [String(i + 1), key, key]),
+    ...(study.none ? [['NP', 'none_of_them', 'none_of_them']] : [])];
+  // What a button says: its text, or the number of a step.
+  const named = (key, i) => (key === undefined ? CHOICES[i] : text(key));
+  const [CHOICES, BESIDE, STACKED] = [0, 1, 2].map((column) => ANSWERS.map((of) => of[column]));
+  // The keys of each answer: by number, and by arrow.
+  const KEYS = ANSWERS.map((of, i) => [String(i + 1), ...of.slice(3)]);
   // The server takes no longer time for an answer than a day.
   const LONGEST_MS = 86400000;
   const STILL = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -36,8 +44,12 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
     const larger = make('button', { type: 'button', className: 'soon', 'aria-pressed': 'false' }, text('enlarge'));
     const smaller = make('button', { type: 'button', className: 'smaller' }, text('smaller'));
     const buttons = CHOICES.map((choice, i) => make('button', { type: 'button', 'aria-disabled': 'true', 'data-choice': choice, 'aria-keyshortcuts': KEYS[i].join(' ') },
-      make('span'), ...(touch ? [] : [make('kbd', { 'aria-hidden': 'true' }, KEYS[i][0])])));
-    const question = make('fieldset', {}, make('legend', {}, text('prompt')), make('div', { className: 'choices' }, ...buttons));
+      make('span'), ...(touch || study.steps ? [] : [make('kbd', { 'aria-hidden': 'true' }, KEYS[i][0])])));
+    // What the ends of a scale mean stands over its steps, and is said with them.
+    const ends = study.steps ? ['scale_low', 'scale_high'] : [];
+    ends.forEach((key, i) => buttons.at(-i).setAttribute('aria-label', `${CHOICES.at(-i)}, ${text(key)}`));
+    const scale = make('div', { className: 'ends', 'aria-hidden': 'true', hidden: !study.steps }, ...ends.map((key) => make('span', {}, text(key))));
+    const question = make('fieldset', {}, make('legend', {}, text('prompt')), scale, make('div', { className: CHOICES.length > 3 ? 'choices many' : 'choices' }, ...buttons));
 
     // What is on the screen, once all of it is there; since when it is seen; how long it has been seen moving.
     let shown = null;
@@ -112,7 +124,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
 
     /** Each surface is so many pixels wide now. */
     function laidOut(width) {
-      const names = (pair.classList.contains('stacked') ? STACKED : BESIDE).map((key) => text(key));
+      const names = (pair.classList.contains('stacked') ? STACKED : BESIDE).map(named);
       buttons.forEach((button, i) => { button.firstChild.textContent = names[i]; });
       small = study.min_surface_px !== undefined && width < study.min_surface_px;
       pair.classList.toggle('small', small);
@@ -246,7 +258,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
     larger.addEventListener('click', () => enlarge(true));
     pair.addEventListener('click', () => enlarge(!pair.classList.contains('large')));
     buttons.forEach((button, i) => {
-      button.firstChild.textContent = text(BESIDE[i]);
+      button.firstChild.textContent = named(BESIDE[i], i);
       button.addEventListener('click', (event) => choose(i, inputOf(event)));
     });
     document.addEventListener('keydown', key);

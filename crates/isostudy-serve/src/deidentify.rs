@@ -70,7 +70,11 @@ pub fn codebook(
     departures: Departures,
     about: Option<&str>,
 ) -> String {
-    let [left, none, right] = file.choices.each_ref().map(|text| escaped(text));
+    let kinds = file.answers();
+    let texts = file.choices.iter().map(String::as_str).chain(std::iter::repeat("a step of the scale"));
+    let answers_of = kinds.iter().zip(texts);
+    let choices: Vec<String> =
+        answers_of.map(|(of, text)| format!("`{}` {}", of.code, escaped(text))).collect();
     let changed = if then == now {
         String::new()
     } else {
@@ -104,8 +108,8 @@ pub fn codebook(
          | `question` | what was compared | id of the study file, with `-r` where it was asked again; `control-1`, ... |\n\
          | `object` | what both sides show | name of the study file |\n\
          | `group` | comparison group; empty for controls | id of the study file |\n\
-         | `left`, `right` | configuration shown on that side | object, underscore, method |\n\
-         | `choice` | answer to \"{prompt}\" | `L` {left}, `NP` {none}, `R` {right}, as shown |\n\
+         {sides}\
+         | `choice` | answer to \"{prompt}\" | {choices}, as shown |\n\
          | `rt_ms` | time from the pair on the screen to the answer | milliseconds; a turn takes {loop_ms} |\n\
          | `role` | why it was asked | `comparison`; `control`: the same on both sides; `repeat`: asked again, sides swapped |\n\
          | `stimulus` | code name of the animation | |\n\
@@ -119,6 +123,12 @@ pub fn codebook(
          | `shown_as` | as what the pair was shown | `gif`, `mp4`, `webm`, `model` |\n\
          | `turned_deg` | degrees by which the participant turned the models, there and back | from 0; empty unless models were shown |\n{about}",
         answers = count(answers, "answer"),
+        choices = choices.join(", "),
+        sides = if file.way.is_of_pairs() {
+            "| `left`, `right` | configuration shown on that side | object, underscore, method |\n"
+        } else {
+            "| `shown` | configurations shown, in the order of their places | object, underscore, method; spaces between |\n"
+        },
         participants = count(participants, "participant"),
         title = escaped(&file.title),
         study = file.study,
@@ -160,6 +170,7 @@ fn escaped(text: &str) -> String {
 mod tests {
     use super::*;
     use crate::record::Choice;
+    use isostudy_design::config::Way;
 
     #[test]
     fn neither_names_nor_order_tell_who_came_when() {
@@ -202,7 +213,7 @@ mod tests {
         FormFile {
             title: "<script> & *stars*".into(),
             prompt: "Which\nof two?".into(),
-            choices: ["Left | a", "[None](http://example.org)", "Right"].map(Into::into),
+            choices: ["Left | a", "[None](http://example.org)", "Right"].map(Into::into).into(),
             ..crate::export::tests::empty_file()
         }
     }
@@ -238,5 +249,8 @@ mod tests {
         assert!(text.contains("&lt;script> &amp; \\*stars\\*"), "{text}");
         assert!(text.contains("Left \\| a, `NP` \\[None\\](http://example.org), `R` Right"), "{text}");
         assert!(text.contains("answer to \"Which of two?\""), "{text}");
+        let forced = FormFile { way: Way::Forced, choices: vec!["This".into(), "That".into()], ..file() };
+        let text = codebook(&forced, ("d", "d"), 1, 1, Departures::default(), None);
+        assert!(text.contains("| `L` This, `R` That, as shown |"), "{text}");
     }
 }

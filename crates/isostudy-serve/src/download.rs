@@ -4,6 +4,8 @@ use crate::cameras::{Track, Tracked};
 use crate::export::Given;
 use crate::record::{About, Answer, Choice};
 use crate::screen;
+use isostudy_design::config::AnswerKind;
+use isostudy_design::forms::FormFile;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -102,7 +104,17 @@ pub enum DownloadError {
         /// What it says.
         value: String,
         /// What it may say.
-        allowed: &'static str,
+        allowed: String,
+    },
+    /// An answer that nobody can give who is asked in the study's way.
+    #[error("the answer at place {order}: choice = {value}: allowed: {allowed}")]
+    Choice {
+        /// Which answer.
+        order: u32,
+        /// What it says.
+        value: &'static str,
+        /// What it may say.
+        allowed: String,
     },
     /// Not the page's JSON.
     #[error("{0}")]
@@ -126,19 +138,23 @@ pub enum DownloadError {
     },
 }
 
-/// The answers of one download, CSV or JSON by their first character.
+/// The answers of one download to a study's forms, CSV or JSON by their first character.
 ///
 /// # Errors
 /// [`DownloadError`].
-pub fn read(text: &str, study: &str) -> Result<Vec<Given>, DownloadError> {
+pub fn read(text: &str, study: &FormFile) -> Result<Vec<Given>, DownloadError> {
     let rows: Vec<Row> = if text.trim_start().starts_with('{') {
         let file: File = serde_json::from_str(text)?;
-        if file.study != study {
+        if file.study != study.study {
             return Err(DownloadError::OtherStudy(file.study));
+        }
+        if let Some(row) = file.answers.iter().find(|row| !row.choice.is_of(&study.answers())) {
+            let (order, value) = (row.order, row.choice.code());
+            return Err(DownloadError::Choice { order, value, allowed: codes(&study.answers()) });
         }
         file.answers
     } else {
-        rows(text.trim_start_matches('\u{feff}'))?
+        rows(text.trim_start_matches('\u{feff}'), &study.answers())?
     };
     rows.into_iter().map(given).collect()
 }
@@ -178,8 +194,13 @@ pub fn read_cameras(text: &str) -> Result<Vec<Tracked>, DownloadError> {
 /// The columns that every download has had.
 const NEEDED: [&str; 6] = ["participant", "form", "order", "stimulus", "choice", "rt_ms"];
 
+/// The codes of the answers, for messages.
+fn codes(answers: &[AnswerKind]) -> String {
+    answers.iter().map(|of| of.code).collect::<Vec<_>>().join(", ")
+}
+
 /// The rows of a CSV.
-fn rows(text: &str) -> Result<Vec<Row>, DownloadError> {
+fn rows(text: &str, answers: &[AnswerKind]) -> Result<Vec<Row>, DownloadError> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers()?.clone();
     let missing: Vec<&str> = NEEDED.into_iter().filter(|name| header.iter().all(|of| of != *name)).collect();
@@ -189,9 +210,10 @@ fn rows(text: &str) -> Result<Vec<Row>, DownloadError> {
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record?;
-        rows.push(
-            record.deserialize(Some(&header)).map_err(|error| wrong_cell(text, &header, &record, error))?,
-        );
+        if let Some(wrong) = wrong_cell(text, answers, &header, &record) {
+            return Err(wrong);
+        }
+        rows.push(record.deserialize(Some(&header))?);
     }
     Ok(rows)
 }
@@ -205,29 +227,31 @@ fn lacking(missing: &[&str], found: &[String]) -> String {
     if missing.len() == NEEDED.len() { found } else { format!("Missing: {}. {found}", missing.join(", ")) }
 }
 
-/// Which cell of a row is to blame.
+/// Which cell of a row the page would not write.
 fn wrong_cell(
     text: &str,
+    answers: &[AnswerKind],
     header: &csv::StringRecord,
     record: &csv::StringRecord,
-    error: csv::Error,
-) -> DownloadError {
+) -> Option<DownloadError> {
     // The reader counts a line when it has read the \n of \r\n, which it does with the record behind it.
-    let begin = record.position().map_or(0, |position| position.byte() as usize).min(text.len());
-    let (before, rest) = text.as_bytes().split_at(begin);
-    let ends =
-        before.iter().filter(|&&byte| byte == b'\n').count() + usize::from(rest.first() == Some(&b'\n'));
-    let line = 1 + ends as u64;
+    let line = || {
+        let begin = record.position().map_or(0, |position| position.byte() as usize).min(text.len());
+        let (before, rest) = text.as_bytes().split_at(begin);
+        let ends =
+            before.iter().filter(|&&byte| byte == b'\n').count() + usize::from(rest.first() == Some(&b'\n'));
+        1 + ends as u64
+    };
     let cells = header.iter().zip(record);
-    let wrong = cells.filter_map(|(column, value)| {
-        let allowed = match column {
-            "form" | "order" | "rt_ms" if value.parse::<u32>().is_err() => "a whole number",
-            "choice" if !["L", "NP", "R"].contains(&value) => "L, NP, R",
+    let mut wrong = cells.filter_map(|(column, value)| {
+        let allowed: String = match column {
+            "form" | "order" | "rt_ms" if value.parse::<u32>().is_err() => "a whole number".into(),
+            "choice" if Choice::of_code(value).is_none_or(|choice| !choice.is_of(answers)) => codes(answers),
             _ => return None,
         };
-        Some(DownloadError::Cell { line, column: column.into(), value: value.into(), allowed })
+        Some(DownloadError::Cell { line: line(), column: column.into(), value: value.into(), allowed })
     });
-    wrong.into_iter().next().unwrap_or(DownloadError::Csv(error))
+    wrong.next()
 }
 
 fn given(row: Row) -> Result<Given, DownloadError> {
@@ -277,6 +301,11 @@ pub fn add(all: &mut BTreeMap<(String, u32), Given>, given: Vec<Given>) -> Resul
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isostudy_design::config::Way;
+
+    fn study() -> FormFile {
+        FormFile { study: "s".into(), ..crate::export::tests::empty_file() }
+    }
 
     const CSV: &str = "participant,form,order,stimulus,choice,rt_ms,answered\r\nab,2,2,tani,NP,812,2026-11-21T10:00:00Z\r\n";
 
@@ -284,13 +313,13 @@ mod tests {
     fn csv_and_json_are_the_same_answers() {
         let json = r#"{"schema":1,"study":"s","participant":"ab","form":2,"started":"x","finished":"y","answers":[
             {"participant":"ab","form":2,"order":2,"stimulus":"tani","choice":"NP","rt_ms":812,"answered":"z"}]}"#;
-        let (csv, json) = (read(CSV, "s").unwrap(), read(json, "s").unwrap());
+        let (csv, json) = (read(CSV, &study()).unwrap(), read(json, &study()).unwrap());
         assert_eq!(csv, json);
         assert_eq!(csv[0].answer.choice, Choice::Np);
         let mut all = BTreeMap::new();
         assert_eq!(add(&mut all, csv), Ok(0));
         assert_eq!(add(&mut all, json), Ok(1));
-        let other = read(&CSV.replace("NP", "L"), "s").unwrap();
+        let other = read(&CSV.replace("NP", "L"), &study()).unwrap();
         assert_eq!(add(&mut all, other), Err(Contradiction { participant: "ab".into(), order: 2 }));
         assert_eq!(all.len(), 1);
     }
@@ -307,7 +336,7 @@ mod tests {
              "viewport_height":844,"pixel_ratio":2.625,"surface_px":266,"layout":"stacked","input":"touch","dropped":3,
              "hidden_ms":40,"shown_as":"model","turned_deg":91},
             {"participant":"ab","form":2,"order":3,"stimulus":"zeti","choice":"L","rt_ms":9,"answered":"z"}]}"#;
-        let (csv, json) = (read(&csv, "s").unwrap(), read(json, "s").unwrap());
+        let (csv, json) = (read(&csv, &study()).unwrap(), read(json, &study()).unwrap());
         assert_eq!(csv, json);
         let screen = csv[0].answer.screen.unwrap();
         assert_eq!((screen.pixel_ratio, screen.dropped, screen.hidden_ms), (2.625, 3, 40));
@@ -324,14 +353,29 @@ mod tests {
         assert_eq!((found.len(), found[0].order, found[0].stimulus.as_str()), (1, 2, "tani"));
         assert_eq!(found[0].track.cameras().last(), Some((51, 46.0, 22.2, 1.0)));
         assert_eq!(read_cameras(CSV).unwrap(), []);
-        assert_eq!(read(json, "s").unwrap().len(), 2);
+        assert_eq!(read(json, &study()).unwrap().len(), 2);
         let wrong = read_cameras(&json.replace("51,460", "-1,460")).unwrap_err().to_string();
         assert_eq!(wrong, "the answer at place 2: no page notes such cameras");
     }
 
     #[test]
+    fn only_the_answers_of_the_way_to_ask_are_read() {
+        let json = r#"{"schema":1,"study":"s","participant":"ab","form":2,"started":"x","finished":"y","answers":[
+            {"participant":"ab","form":2,"order":2,"stimulus":"tani","choice":"NP","rt_ms":812,"answered":"z"}]}"#;
+        let [forced, graded] = [Way::Forced, Way::Graded].map(|way| FormFile { way, ..study() });
+        let wrong = |text: &str, of: &FormFile| read(text, of).unwrap_err().to_string();
+        assert_eq!(wrong(CSV, &forced), "line 2: choice = NP: allowed: L, R");
+        assert_eq!(wrong(json, &forced), "the answer at place 2: choice = NP: allowed: L, R");
+        let much = |text: &str| text.replace("NP", "RR");
+        assert_eq!(wrong(&much(CSV), &study()), "line 2: choice = RR: allowed: L, NP, R");
+        for text in [much(CSV), much(json)] {
+            assert_eq!(read(&text, &graded).unwrap()[0].answer.choice, Choice::Rr);
+        }
+    }
+
+    #[test]
     fn what_is_not_a_download_says_where() {
-        let wrong = |text: &str| read(text, "s").unwrap_err().to_string();
+        let wrong = |text: &str| read(text, &study()).unwrap_err().to_string();
         assert!(
             wrong(&CSV.replace("NP", "maybe")) == "line 2: choice = maybe: allowed: L, NP, R",
             "{}",

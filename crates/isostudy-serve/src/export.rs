@@ -2,6 +2,7 @@
 
 use crate::record::Answer;
 use crate::screen;
+use isostudy_design::config::Way;
 use isostudy_design::forms::KeyEntry;
 use serde::Serialize;
 use std::collections::HashMap;
@@ -26,8 +27,7 @@ pub struct Line<'a> {
     question: &'a str,
     object: &'a str,
     group: &'a str,
-    left: &'a str,
-    right: &'a str,
+    sides: Vec<&'a str>,
     choice: &'static str,
     rt_ms: u32,
     role: &'a isostudy_design::forms::Role,
@@ -72,8 +72,10 @@ pub fn lines<'a>(given: &'a [Given], key: &'a [KeyEntry]) -> Result<Vec<Line<'a>
                 question: &entry.question,
                 object: &entry.object,
                 group: &entry.group,
-                left: &entry.left,
-                right: &entry.right,
+                sides: match entry.shown.as_str() {
+                    "" => vec![&entry.left, &entry.right],
+                    shown => vec![shown],
+                },
                 choice: answer.choice.code(),
                 rt_ms: answer.rt_ms,
                 role: &entry.role,
@@ -102,8 +104,20 @@ pub fn csv<T: Serialize>(lines: &[T], header: &[&str]) -> String {
     write().expect("memory takes everything, and texts are UTF-8")
 }
 
-/// The columns of [`Line`].
-pub const HEADER: [&str; 22] = isostudy_responses::LONG_WRITTEN_WITH_SCREENS;
+/// The columns of [`Line`]: of pairs both sides, else all that was shown.
+pub fn header(way: Way) -> Vec<&'static str> {
+    let all = isostudy_responses::LONG_WRITTEN_WITH_SCREENS.into_iter();
+    match way.is_of_pairs() {
+        true => all.collect(),
+        false => all
+            .filter(|name| *name != "left")
+            .map(|name| if name == "right" { SHOWN } else { name })
+            .collect(),
+    }
+}
+
+/// The column of what was shown, where people do not compare two.
+const SHOWN: &str = isostudy_responses::SHOWN_COLUMN;
 
 #[cfg(test)]
 pub(crate) mod tests {
@@ -117,8 +131,12 @@ pub(crate) mod tests {
             study: "trial".into(),
             title: "Trial".into(),
             prompt: "Which?".into(),
-            choices: ["Left", "None", "Right"].map(Into::into),
+            way: isostudy_design::config::Way::Pairs,
+            choices: ["Left", "None", "Right"].map(Into::into).into(),
             choices_stacked: None,
+            steps: 7,
+            ends: None,
+            none: false,
             min_surface_px: None,
             languages: vec!["en".into()],
             texts: std::collections::BTreeMap::new(),

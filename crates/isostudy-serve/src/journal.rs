@@ -40,6 +40,7 @@ use crate::export::Given;
 use crate::machine::{Machine, Owned, System};
 use crate::record::{About, Answer, Choice, Identifiers, Refusal, check, first_place};
 use copy::Copied;
+use isostudy_design::config::AnswerKind;
 use isostudy_design::forms::{AboutEntry, FormEntry, FormFile, Quotas};
 use place::Place;
 use rusqlite::{Connection, params};
@@ -183,6 +184,8 @@ pub struct Journal {
     folder: PathBuf,
     answers: Connection,
     identities: Connection,
+    /// The answers that can be given.
+    kinds: Vec<AnswerKind>,
     forms: Vec<FormEntry>,
     languages: Vec<String>,
     questions: Vec<AboutEntry>,
@@ -283,6 +286,7 @@ impl Journal {
             folder: folder.into(),
             answers,
             identities,
+            kinds: file.answers(),
             forms: file.forms.clone(),
             languages: file.languages.clone(),
             questions: file.about.clone(),
@@ -504,7 +508,7 @@ impl Journal {
         now_ms: i64,
     ) -> rusqlite::Result<Result<(), Refusal>> {
         if let Some(newcomer) = self.newcomer(token) {
-            if let Err(refusal) = check(answer, &self.forms[newcomer.form - 1], 0) {
+            if let Err(refusal) = check(answer, &self.kinds, &self.forms[newcomer.form - 1], 0) {
                 return Ok(Err(refusal));
             }
             if self.people.len() >= MOST {
@@ -515,7 +519,7 @@ impl Journal {
         let Some(&place) = self.by_token.get(token) else { return Ok(Err(Refusal::UnknownToken)) };
         let person = &self.people[place];
         let form = &self.forms[person.form - 1];
-        if let Err(refusal) = check(answer, form, person.choices.len() as u32) {
+        if let Err(refusal) = check(answer, &self.kinds, form, person.choices.len() as u32) {
             return Ok(Err(refusal));
         }
         if ((answer.order - first_place(form)) as usize) < person.choices.len() {

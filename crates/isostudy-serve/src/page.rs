@@ -1,7 +1,7 @@
 //! The questionnaire's page.
 
 use crate::completions::Completions;
-use isostudy_design::config::Panel;
+use isostudy_design::config::{Panel, Way};
 use isostudy_design::forms::{AboutEntry, FormEntry, FormFile, Language};
 use serde::Serialize;
 
@@ -164,11 +164,23 @@ struct KnownKind {
     asked: Option<&'static str>,
 }
 
+fn is_pairs(way: &Way) -> bool {
+    *way == Way::Pairs
+}
+
 /// What the page knows of the study.
 #[derive(Serialize)]
 struct Known<'a> {
     study: &'a str,
     digest: &'a str,
+    #[serde(skip_serializing_if = "is_pairs")]
+    way: Way,
+    /// Steps of a scale.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    steps: Option<u32>,
+    /// Whether none of several may be taken.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    none: bool,
     languages: Vec<Language>,
     #[serde(skip_serializing_if = "Option::is_none")]
     min_surface_px: Option<u32>,
@@ -217,6 +229,9 @@ pub fn forms_js(file: &FormFile, digest: &str, media: &Media, served: Option<Ser
     let known = Known {
         study: &file.study,
         digest,
+        way: file.way,
+        steps: (file.way == Way::Ratings).then_some(file.steps),
+        none: file.way.is_best() && file.none,
         languages: file.spoken(),
         min_surface_px: file.min_surface_px,
         loop_ms: file.loop_ms,
@@ -268,8 +283,13 @@ mod tests {
         let of_the_file = ["language", "direction", "no_script"];
         // Questions about the person name their words themselves.
         let of_questions = ["colour_vision", "screen_size", "comment"];
+        // Those that stand in the place of others.
+        let replaced: Vec<&str> =
+            Way::ALL.into_iter().flat_map(Way::texts).map(|(_, instead)| *instead).collect();
         let is_named = |key: &&String| {
-            of_the_file.contains(&key.as_str()) || of_questions.iter().any(|start| key.starts_with(start))
+            replaced.contains(&key.as_str())
+                || of_the_file.contains(&key.as_str())
+                || of_questions.iter().any(|start| key.starts_with(start))
         };
         for key in english.keys().filter(|key| !is_named(key)) {
             // Both sides of a pair are asked for by one line.

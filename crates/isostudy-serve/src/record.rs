@@ -1,6 +1,7 @@
 //! What participants send, and when it is refused.
 
 use crate::screen::{LONGEST_MS, Screen};
+use isostudy_design::config::AnswerKind;
 use isostudy_design::forms::FormEntry;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -11,31 +12,65 @@ pub type About = BTreeMap<String, String>;
 /// Longest identifier of a panel.
 const LONGEST_ID: usize = 64;
 
-/// What was chosen, as shown.
+/// What was answered, as shown: any answer of any [`Way`](isostudy_design::config::Way) to ask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "&'static str")]
 pub enum Choice {
-    /// The left half.
+    /// The left half; in five steps, it is better.
     L,
-    /// No preference.
-    #[serde(rename = "NP")]
+    /// No preference, or none of several.
     Np,
-    /// The right half.
+    /// The right half; in five steps, it is better.
     R,
+    /// The left half is much better.
+    Ll,
+    /// The right half is much better.
+    Rr,
+    /// A step of a scale, or a place among several, from 1: of [`DIGITS`].
+    Number(u8),
 }
 
+/// What numbers are in files.
+const DIGITS: [&str; 9] = ["1", "2", "3", "4", "5", "6", "7", "8", "9"];
+
 impl Choice {
-    /// `L`, `NP` or `R`.
+    /// `L`, `NP`, `R`, `LL`, `RR`, or a digit.
     pub fn code(self) -> &'static str {
         match self {
             Self::L => "L",
             Self::Np => "NP",
             Self::R => "R",
+            Self::Ll => "LL",
+            Self::Rr => "RR",
+            Self::Number(number) => DIGITS[usize::from(number).clamp(1, DIGITS.len()) - 1],
         }
     }
 
     /// The choice with this code.
     pub fn of_code(code: &str) -> Option<Self> {
-        [Self::L, Self::Np, Self::R].into_iter().find(|choice| choice.code() == code)
+        let words = [Self::L, Self::Np, Self::R, Self::Ll, Self::Rr];
+        let digit = DIGITS.iter().position(|digit| *digit == code);
+        let number = digit.map(|place| Self::Number(place as u8 + 1));
+        words.into_iter().find(|choice| choice.code() == code).or(number)
+    }
+
+    /// Whether it is one of these answers.
+    pub fn is_of(self, answers: &[AnswerKind]) -> bool {
+        answers.iter().any(|of| of.code == self.code())
+    }
+}
+
+impl TryFrom<String> for Choice {
+    type Error = String;
+
+    fn try_from(code: String) -> Result<Self, String> {
+        Self::of_code(&code).ok_or_else(|| format!("{code:?} is no answer"))
+    }
+}
+
+impl From<Choice> for &'static str {
+    fn from(choice: Choice) -> Self {
+        choice.code()
     }
 }
 
@@ -128,17 +163,25 @@ pub fn first_place(form: &FormEntry) -> u32 {
     form.training.len() as u32 + 1
 }
 
-/// Whether an answer fits a form of which this many questions have been answered; an answer to one of those is judged by the
+/// Whether an answer is one of those that can be given, and fits a form of which this many questions have been answered; an answer to one of those is judged by the
 /// caller, who knows it.
 ///
 /// # Errors
 /// [`Refusal`].
-pub fn check(answer: &Answer, form: &FormEntry, answered: u32) -> Result<(), Refusal> {
+pub fn check(
+    answer: &Answer,
+    answers: &[AnswerKind],
+    form: &FormEntry,
+    answered: u32,
+) -> Result<(), Refusal> {
     let first = first_place(form);
     let question = answer.order.checked_sub(first).and_then(|place| form.questions.get(place as usize));
     let shown = question.ok_or(Refusal::UnknownPlace(answer.order))?;
     if *shown != answer.stimulus {
         return Err(Refusal::OtherStimulus(answer.order));
+    }
+    if !answer.choice.is_of(answers) {
+        return Err(Refusal::NoSuchValue);
     }
     if answer.rt_ms > LONGEST_MS {
         return Err(Refusal::TooLong);

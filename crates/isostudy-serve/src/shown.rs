@@ -40,6 +40,9 @@ struct Pair<'a> {
     object: Option<&'a str>,
     left: Option<&'a str>,
     right: Option<&'a str>,
+    /// Where people do not compare two: all that was shown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shown: Option<&'a str>,
     changed: u32,
     screen: Option<Screen>,
 }
@@ -72,8 +75,9 @@ pub fn json<'a>(
                 stimulus: &one.answer.stimulus,
                 question: shown.map(|entry| entry.question.as_str()),
                 object: shown.map(|entry| entry.object.as_str()),
-                left: shown.map(|entry| entry.left.as_str()),
-                right: shown.map(|entry| entry.right.as_str()),
+                left: shown.map(|entry| entry.left.as_str()).filter(|side| !side.is_empty()),
+                right: shown.map(|entry| entry.right.as_str()).filter(|side| !side.is_empty()),
+                shown: shown.map(|entry| entry.shown.as_str()).filter(|all| !all.is_empty()),
                 changed: one.answer.change,
                 screen: one.answer.screen,
             }
@@ -131,6 +135,7 @@ mod tests {
             group: "g".into(),
             left: "s_a".into(),
             right: "s_b".into(),
+            shown: String::new(),
         });
         let file = crate::export::tests::empty_file();
         let languages = [("b".to_owned(), "ar".to_owned())].into();

@@ -90,6 +90,8 @@ pub struct Ballot<Chosen> {
     question: u32,
     items: [u32; 2],
     chosen: Chosen,
+    /// Whether what was chosen is much better, where people answered in steps.
+    much: bool,
 }
 
 /// An answer as it was shown: its items are those on the left and on the right.
@@ -125,6 +127,7 @@ impl<Chosen> Ballot<Chosen> {
             question: narrow(question),
             items: items.map(narrow),
             chosen,
+            much: false,
         }
     }
 
@@ -171,7 +174,8 @@ impl ShownBallot {
             true => ([left, right], preference),
             false => ([right, left], preference.reversed()),
         };
-        DeclaredBallot { participant: self.participant, question: self.question, items, chosen }
+        let Self { participant, question, much, .. } = *self;
+        DeclaredBallot { participant, question, items, chosen, much }
     }
 
     /// The same answer about items, the one with the lower number named first.
@@ -189,9 +193,19 @@ impl ShownBallot {
         Self { items: items.map(narrow), ..*self }
     }
 
-    /// The same with another outcome.
+    /// The same with another outcome, which is not much better.
     pub fn with_outcome(&self, outcome: Outcome) -> Self {
-        Self { chosen: outcome, ..*self }
+        Self { chosen: outcome, much: false, ..*self }
+    }
+
+    /// The same, what was chosen being much better or not.
+    pub fn by_much(&self, much: bool) -> Self {
+        Self { much, ..*self }
+    }
+
+    /// How far the left item is better, in steps: 2 if much, 1, 0, and below 0 where the right one is.
+    pub fn step(&self) -> i8 {
+        self.chosen.sign() as i8 * if self.much { 2 } else { 1 }
     }
 
     /// The same with items and outcome exchanged between the sides.
@@ -261,6 +275,16 @@ mod tests {
         let control = ShownBallot::new(0, 0, [2, 2], Outcome::Right).by_item();
         assert_eq!((control.first(), control.second(), control.preference()), (2, 2, Preference::Second));
         assert_eq!(Preference::Neither.reversed().index(), 1);
+    }
+
+    #[test]
+    fn steps_turn_with_their_sides() {
+        let shown = ShownBallot::new(0, 0, [0, 1], Outcome::Left).by_much(true);
+        assert_eq!((shown.step(), shown.turned().step()), (2, -2));
+        assert_eq!(shown.with_items([3, 4]).with_participant(2).step(), 2);
+        assert_eq!(shown.with_outcome(Outcome::Right).step(), -1);
+        assert_eq!(shown.with_outcome(Outcome::Tie).by_much(true).step(), 0);
+        assert_eq!(size_of::<ShownBallot>(), 20);
     }
 
     #[test]

@@ -25,6 +25,8 @@ pub struct Protocol<'a> {
     pub shown_ms: Option<f64>,
     /// Whether left and right are no sides; then nobody is one-sided.
     pub sides_unknown: bool,
+    /// Whether nobody could answer "no preference"; then to decide a control is no sign of guessing.
+    pub forced: bool,
 }
 
 /// One participant's answers, seen from outside.
@@ -142,7 +144,9 @@ impl Screening {
                 let one_side = left + right >= 10 && left.min(right) == 0;
                 one_side && !protocol.sides_unknown && self.tells_sides()
             }
-            Flag::Controls => self.controls_decided >= 2 && 2 * self.controls_decided > self.controls,
+            Flag::Controls => {
+                !protocol.forced && self.controls_decided >= 2 && 2 * self.controls_decided > self.controls
+            }
             Flag::Repeats => self.repeats_opposite >= 2 && 2 * self.repeats_opposite > self.repeats,
             Flag::Time => {
                 let least = protocol.shown_ms.map(|each| each * self.timed as f64);

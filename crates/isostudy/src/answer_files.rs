@@ -8,6 +8,7 @@ use isostudy_design::config::ResponsesSection;
 use isostudy_report::PARQUET_MARK;
 use isostudy_responses::{
     Kind, LARGEST_FILE, LONG_COLUMNS, Mapping, Plan, Reading, Report, normalise, read_person_columns,
+    read_several,
 };
 use std::io::Read;
 use std::path::Path;
@@ -31,7 +32,11 @@ pub(crate) fn of_study(study: &Study) -> Result<Option<Reading>> {
         );
     }
     input::regular(path)?;
-    let mut reading = read(path, Some(&Plan::of_study(study)), &mapping)?;
+    let of_pairs = study.file.forms.as_ref().is_none_or(|forms| forms.way.is_of_pairs());
+    let mut reading = match of_pairs {
+        true => read(path, Some(&Plan::of_study(study)), &mapping)?,
+        false => read_several(path, study)?,
+    };
     let wanted = study.file.analysis.person_columns();
     if !wanted.is_empty() {
         let of = study.people.as_ref().unwrap_or(path);

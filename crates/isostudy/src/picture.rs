@@ -213,13 +213,17 @@ fn with_room_below(picture: &Pixmap, scale: Option<&Pixmap>, room: u32) -> Pixma
 }
 
 /// Two pictures of one size, edge to edge.
-pub(crate) fn side_by_side(left: &Pixmap, right: &Pixmap) -> Pixmap {
-    let mut both =
-        Pixmap::new(left.width() + right.width(), left.height()).expect("two pictures have pixels");
+pub(crate) fn in_a_row(all: &[&Pixmap]) -> Pixmap {
+    let width = all.iter().map(|one| one.width()).sum();
+    let height = all.iter().map(|one| one.height()).max().unwrap_or(0);
+    let mut row = Pixmap::new(width, height).expect("pictures have pixels");
     let (paint, still) = (PixmapPaint::default(), Transform::identity());
-    both.draw_pixmap(0, 0, left.as_ref(), &paint, still, None);
-    both.draw_pixmap(left.width() as i32, 0, right.as_ref(), &paint, still, None);
-    both
+    let mut left = 0;
+    for one in all {
+        row.draw_pixmap(left, 0, one.as_ref(), &paint, still, None);
+        left += one.width() as i32;
+    }
+    row
 }
 
 /// Labelled pictures in rows, as a PNG.

@@ -1,6 +1,7 @@
 //! How the questions are put to people.
 
 use super::about::AboutSection;
+use super::way::Way;
 use super::{perhaps_whole, whole};
 use crate::method::ConfigurationId;
 use crate::texts::{Texts, english};
@@ -62,11 +63,24 @@ impl Presentation {
 pub struct FormsSection {
     /// What is asked about each pair.
     pub prompt: String,
-    /// The answers: left, no preference, right.
-    pub choices: [String; 3],
-    /// The answers where one surface is over the other, on screens higher than wide: upper, no preference, lower.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub choices_stacked: Option<[String; 3]>,
+    /// How people are asked.
+    #[serde(default, skip_serializing_if = "Way::is_pairs")]
+    pub way: Way,
+    /// The answers, left to right, such as left, no preference, right; none for the shipped texts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub choices: Vec<String>,
+    /// The answers where one surface is over the other, on screens higher than wide: such as upper, no preference, lower.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub choices_stacked: Option<Vec<String>>,
+    /// Steps of the scale on which surfaces are rated, from 1.
+    #[serde(default = "steps", deserialize_with = "whole", skip_serializing_if = "is_steps")]
+    pub steps: u32,
+    /// What the first and the last step mean; none for the shipped texts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ends: Option<[String; 2]>,
+    /// Whether people may take none of several surfaces.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub none: bool,
     /// Least width of each surface on the screen, in CSS pixels, at which it can be judged.
     #[serde(default, deserialize_with = "perhaps_whole", skip_serializing_if = "Option::is_none")]
     pub min_surface_px: Option<u32>,
@@ -207,6 +221,14 @@ pub(crate) fn languages() -> Vec<String> {
 
 pub(crate) fn is_english_alone(languages: &[String]) -> bool {
     languages == ["en"]
+}
+
+pub(crate) fn steps() -> u32 {
+    7
+}
+
+pub(crate) fn is_steps(value: &u32) -> bool {
+    *value == steps()
 }
 
 fn once() -> u32 {

@@ -2,10 +2,12 @@
 
 use super::about::AboutEntry;
 use super::{Form, Questionnaire, Role};
-use crate::config::{AboutSection, Presentation, is_english_alone, is_false, languages};
+use crate::config::{
+    AboutSection, AnswerKind, ENDS, Presentation, Way, is_english_alone, is_false, is_steps, languages, steps,
+};
 use crate::method::ConfigurationId;
 use crate::study::Study;
-use crate::texts::Texts;
+use crate::texts::{ENGLISH, Texts, english, shipped};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -24,11 +26,23 @@ pub struct FormFile {
     pub title: String,
     /// What is asked about each pair.
     pub prompt: String,
-    /// The answers: left, no preference, right.
-    pub choices: [String; 3],
+    /// How people are asked.
+    #[serde(default, skip_serializing_if = "Way::is_pairs")]
+    pub way: Way,
+    /// The answers, left to right, such as left, no preference, right.
+    pub choices: Vec<String>,
     /// The answers where one surface is over the other, unless they follow from `choices`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub choices_stacked: Option<[String; 3]>,
+    pub choices_stacked: Option<Vec<String>>,
+    /// Steps of the scale on which surfaces are rated, from 1.
+    #[serde(default = "steps", skip_serializing_if = "is_steps")]
+    pub steps: u32,
+    /// What the first and the last step mean.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ends: Option<[String; 2]>,
+    /// Whether people may take none of several surfaces.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub none: bool,
     /// Least width of each surface on the screen, in CSS pixels, at which it can be judged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min_surface_px: Option<u32>,
@@ -100,10 +114,22 @@ pub struct KeyEntry {
     pub object: String,
     /// Id of the comparison group; empty for controls and training.
     pub group: String,
-    /// Configuration on the left.
+    /// Configuration on the left; empty where people do not compare two.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub left: String,
     /// Configuration on the right.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub right: String,
+    /// Where people do not compare two: every configuration that is shown, in the order of their places, spaces between.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub shown: String,
+}
+
+impl FormFile {
+    /// The answers that people can give, in order.
+    pub fn answers(&self) -> Vec<AnswerKind> {
+        self.way.answers_of(self.steps, self.none)
+    }
 }
 
 impl Questionnaire<'_> {
@@ -113,7 +139,7 @@ impl Questionnaire<'_> {
         let entry = |form: &Form| {
             let of = |training: bool| {
                 let own = form.trials.iter().filter(|trial| (trial.role == Role::Training) == training);
-                own.map(|trial| codes[&trial.left][&trial.right].clone()).collect()
+                own.map(|trial| codes[&trial.shown].clone()).collect()
             };
             FormEntry { form: form.participant + 1, training: of(true), questions: of(false) }
         };
@@ -122,13 +148,17 @@ impl Questionnaire<'_> {
             study: self.study.file.study.id.clone(),
             title: self.study.file.study.title.clone(),
             prompt: self.section.prompt.clone(),
-            choices: self.section.choices.clone(),
+            way: self.section.way,
+            choices: self.choices(),
+            steps: self.section.steps,
+            ends: (self.section.way == Way::Ratings).then(|| self.ends()),
+            none: self.section.none,
             choices_stacked: self.section.choices_stacked.clone(),
             min_surface_px: self.section.min_surface_px,
             languages: self.section.languages.clone(),
             texts: self.study.texts.clone(),
-            consent: self.section.consent.clone(),
-            instructions: self.section.instructions.clone(),
+            consent: self.usual("consent", &self.section.consent),
+            instructions: self.usual("instructions", &self.section.instructions),
             about: self.about(),
             contact: self.section.contact.clone(),
             ethics: self.section.ethics.clone(),
@@ -139,6 +169,36 @@ impl Questionnaire<'_> {
             loop_ms: self.study.file.turntable.loop_ms(),
             page_scale: self.section.page_scale,
             forms: self.planned().iter().map(entry).collect(),
+        }
+    }
+
+    /// The answers in the study's first language: its own texts, or those of the language.
+    fn choices(&self) -> Vec<String> {
+        if !self.section.choices.is_empty() {
+            return self.section.choices.clone();
+        }
+        let answers = self.section.way.answers_of(self.section.steps, self.section.none);
+        answers.iter().filter(|of| !of.text.is_empty()).map(|of| self.text(of.text)).collect()
+    }
+
+    /// What the ends of the scale mean in the study's first language.
+    fn ends(&self) -> [String; 2] {
+        self.section.ends.clone().unwrap_or_else(|| ENDS.map(|key| self.text(key)))
+    }
+
+    /// A text of the page in the study's first language, which it does not say in [forms].
+    fn text(&self, key: &str) -> String {
+        let lang = self.section.languages.first().map_or(ENGLISH, String::as_str);
+        let own = self.study.texts.get(lang).and_then(|texts| texts.get(key));
+        own.or_else(|| shipped(lang)?.get(key)).unwrap_or_else(|| &english()[key]).clone()
+    }
+
+    /// A text of the study; where nobody wrote it, that of the way to ask.
+    fn usual(&self, key: &str, text: &str) -> String {
+        if text == english()[key] {
+            english()[self.section.way.instead(key)].clone()
+        } else {
+            text.to_owned()
         }
     }
 
@@ -168,30 +228,29 @@ impl Questionnaire<'_> {
             for (place, trial) in form.trials.iter().enumerate() {
                 let comparison = trial.comparison.map(|i| &self.study.comparisons[i]);
                 let objects = &self.study.file.objects;
-                let object = objects.iter().find(|object| object.id == trial.left.object);
+                let object = objects.iter().find(|object| object.id == trial.shown[0].object);
+                let of_pair = self.section.way.is_of_pairs();
+                let names: Vec<String> = trial.shown.iter().map(ToString::to_string).collect();
                 key.push(KeyEntry {
                     form: form.participant + 1,
                     order: place + 1,
-                    stimulus: codes[&trial.left][&trial.right].clone(),
+                    stimulus: codes[&trial.shown].clone(),
                     role: trial.role,
                     question: trial.question.clone(),
                     object: object.map_or_else(String::new, |object| object.name.clone()),
                     group: comparison.map_or_else(String::new, |c| self.study.groups[c.group].id.clone()),
-                    left: trial.left.to_string(),
-                    right: trial.right.to_string(),
+                    left: names.first().filter(|_| of_pair).cloned().unwrap_or_default(),
+                    right: names.get(1).filter(|_| of_pair).cloned().unwrap_or_default(),
+                    shown: if of_pair { String::new() } else { names.join(" ") },
                 });
             }
         }
         key
     }
 
-    /// Code names by what is on the left, then on the right. A study's stimuli are all that its forms show.
-    fn codes(&self) -> BTreeMap<ConfigurationId, BTreeMap<ConfigurationId, String>> {
-        let mut codes: BTreeMap<_, BTreeMap<_, _>> = BTreeMap::new();
-        for Stimulus { code, left, right } in self.study.stimuli() {
-            codes.entry(left).or_default().insert(right, code);
-        }
-        codes
+    /// Code names by what is shown. A study's stimuli are all that its forms show.
+    fn codes(&self) -> BTreeMap<Vec<ConfigurationId>, String> {
+        self.study.stimuli().into_iter().map(|of| (of.shown, of.code)).collect()
     }
 }
 
@@ -205,23 +264,30 @@ pub struct Quotas {
 }
 
 impl Study {
-    /// Every pair of animations that has to be made: the comparisons as listed, then what else the forms show.
+    /// Every animation for participants that has to be made: of pairs the comparisons as listed, then what else the forms show.
     pub fn stimuli(&self) -> Vec<Stimulus> {
         let (_, codes) = self.code_names();
-        let pairs = self.pairs().into_iter();
-        pairs.zip(codes).map(|((left, right), code)| Stimulus { code, left, right }).collect()
+        self.pairs().into_iter().zip(codes).map(|(shown, code)| Stimulus { code, shown }).collect()
     }
 }
 
-/// Two configurations side by side, as one animation.
+/// Configurations side by side, as one animation: two, or as many as the way to ask shows at once.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stimulus {
     /// Its code name.
     pub code: String,
-    /// On the left.
-    pub left: ConfigurationId,
-    /// On the right.
-    pub right: ConfigurationId,
+    /// Left to right.
+    pub shown: Vec<ConfigurationId>,
+}
+
+impl Stimulus {
+    /// The left and the right one of a pair.
+    pub fn pair(&self) -> Option<[&ConfigurationId; 2]> {
+        match &self.shown[..] {
+            [left, right] => Some([left, right]),
+            _ => None,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -248,7 +314,7 @@ mod tests {
         let codes: BTreeMap<String, (String, String)> = study
             .stimuli()
             .into_iter()
-            .map(|s| (s.code, (s.left.to_string(), s.right.to_string())))
+            .map(|s| (s.code, (s.shown[0].to_string(), s.shown[1].to_string())))
             .collect();
         let mut lines = key.iter();
         for form in &file.forms {

@@ -17,7 +17,7 @@ pub(super) fn circle(
     repeats.shuffle(random);
     for (k, repeat) in repeats.iter().enumerate() {
         let first = k * (count / 2) / repeats.len();
-        let original = comparisons.iter().find(|trial| trial.comparison == repeat.comparison);
+        let original = comparisons.iter().find(|trial| trial.asks_the_same(repeat));
         places[first] = original;
         places[first + count / 2] = Some(repeat);
     }
@@ -27,7 +27,7 @@ pub(super) fn circle(
     let taken: Vec<usize> = (0..controls.len()).map(|k| free[k * free.len() / controls.len()]).collect();
     taken.iter().zip(shuffled).for_each(|(&place, control)| places[place] = Some(control));
     free.retain(|place| !taken.contains(place));
-    let repeated = |trial: &&Trial| repeats.iter().any(|repeat| repeat.comparison == trial.comparison);
+    let repeated = |trial: &&Trial| repeats.iter().any(|repeat| repeat.asks_the_same(trial));
     let mut rest: Vec<&Trial> = comparisons.iter().filter(|trial| !repeated(trial)).collect();
     rest.shuffle(random);
     free.iter().zip(rest).for_each(|(&place, trial)| places[place] = Some(trial));

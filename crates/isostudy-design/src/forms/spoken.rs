@@ -1,12 +1,10 @@
 //! A study's page in each of its languages: shipped texts, and over them the study's own.
 
 use super::FormFile;
+use crate::config::ENDS;
 use crate::texts::{DIRECTION, ENGLISH, OF_STUDY, Texts, english, shipped};
 use serde::Serialize;
 use std::collections::BTreeSet;
-
-/// The answers beside each other, and the same where one surface is over the other.
-const STACKED: [(&str, &str); 3] = [("left", "upper"), ("none", "none_stacked"), ("right", "lower")];
 
 /// A language of a study's page with everything that the page says in it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -37,15 +35,18 @@ impl FormFile {
         add("prompt", &self.prompt);
         // A text that nobody wrote is the shipped one, in whatever language.
         for (key, text) in [("consent", &self.consent), ("instructions", &self.instructions)] {
-            if *text != english()[key] {
+            if *text != english()[self.way.instead(key)] {
                 add(key, text);
             }
         }
-        for (i, (beside, stacked)) in STACKED.into_iter().enumerate() {
-            add(beside, &self.choices[i]);
-            if let Some(choices) = &self.choices_stacked {
-                add(stacked, &choices[i]);
-            }
+        for (answer, text) in self.answers().iter().zip(&self.choices) {
+            add(answer.text, text);
+        }
+        for (answer, text) in self.answers().iter().zip(self.choices_stacked.iter().flatten()) {
+            add(answer.stacked, text);
+        }
+        for (key, text) in ENDS.into_iter().zip(self.ends.iter().flatten()) {
+            add(key, text);
         }
         own
     }
@@ -66,14 +67,20 @@ impl FormFile {
             texts.insert(key.into(), if key == "title" { &self.title } else { &self.prompt }.clone());
         }
         texts.extend(shipped(lang).cloned().unwrap_or_default());
-        for (beside, stacked) in STACKED {
+        // What a study says of its own way stands where pairs have another text.
+        for (key, of_way) in self.way.texts() {
+            let text = own.get(*of_way).unwrap_or(&texts[*of_way]).clone();
+            texts.insert((*key).into(), text);
+        }
+        for answer in self.answers().iter().filter(|of| of.text != of.stacked) {
             // Words of a study's own stay where the surfaces stand.
-            let is_own = own.get(beside).is_some_and(|text| *text != texts[beside]);
-            if is_own && !own.contains_key(stacked) {
-                texts.insert(stacked.into(), own[beside].clone());
+            let is_own = own.get(answer.text).is_some_and(|text| *text != texts[answer.text]);
+            if is_own && !own.contains_key(answer.stacked) {
+                texts.insert(answer.stacked.into(), own[answer.text].clone());
             }
         }
         texts.extend(own);
+        texts.retain(|key, _| !self.way.does_without(key));
         texts
     }
 
@@ -94,7 +101,8 @@ impl FormFile {
                 !own.contains_key(*key)
                     && (of_study.contains(key) || usual.is_none_or(|usual| !usual.contains_key(*key)))
             };
-            all.into_iter().filter(lacks).map(str::to_owned).collect::<Vec<_>>()
+            let used = all.into_iter().filter(|key| !self.way.does_without(key));
+            used.filter(lacks).map(str::to_owned).collect::<Vec<_>>()
         };
         let languages = self.languages.iter().map(|lang| (lang.as_str(), needed(lang)));
         languages.filter(|(_, keys)| !keys.is_empty()).collect()

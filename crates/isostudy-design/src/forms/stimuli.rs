@@ -5,9 +5,9 @@ use crate::method::ConfigurationId;
 use crate::study::Study;
 
 impl Study {
-    /// Every pair, left and right, that is shown to anybody: the comparisons as listed, then what else the forms need.
-    pub(crate) fn pairs(&self) -> Vec<(ConfigurationId, ConfigurationId)> {
-        let as_listed = || self.comparisons.iter().map(|c| (c.left.clone(), c.right.clone())).collect();
+    /// Everything that is shown to anybody at once, left to right: of pairs the comparisons as listed, then what else the forms need.
+    pub(crate) fn pairs(&self) -> Vec<Vec<ConfigurationId>> {
+        let as_listed = || self.comparisons.iter().map(|c| vec![c.left.clone(), c.right.clone()]).collect();
         Questionnaire::of(self).map_or_else(as_listed, |questionnaire| questionnaire.pairs())
     }
 

@@ -19,7 +19,8 @@ fn study(kept: impl Fn(usize) -> bool, section: FormsSection) -> Study {
 fn balanced(participants: u32, controls: u32, repeats: u32, max_questions: u32) -> FormsSection {
     FormsSection {
         prompt: "Which?".into(),
-        choices: ["left", "none", "right"].map(String::from),
+        way: Default::default(),
+        choices: ["left", "none", "right"].map(String::from).into(),
         participants,
         sides: SideRule::Balanced,
         order: OrderRule::LatinSquare,
@@ -32,6 +33,9 @@ fn balanced(participants: u32, controls: u32, repeats: u32, max_questions: u32) 
         instructions: "Look".into(),
         page_scale: 1,
         choices_stacked: None,
+        steps: 7,
+        ends: None,
+        none: false,
         min_surface_px: None,
         web_mb: 40,
         completion: None,
@@ -115,8 +119,8 @@ proptest! {
                 places.entry(key).or_insert_with(|| vec![0; asked])[place] += 1;
                 if trial.role == Role::Comparison {
                     let listed = &study.comparisons[trial.comparison.unwrap()];
-                    let as_listed = listed.left == trial.left && listed.right == trial.right;
-                    let swapped = listed.left == trial.right && listed.right == trial.left;
+                    let as_listed = listed.left == trial.shown[0] && listed.right == trial.shown[1];
+                    let swapped = listed.left == trial.shown[1] && listed.right == trial.shown[0];
                     prop_assert!(as_listed || swapped);
                     *lead.entry(&trial.question).or_default() += if as_listed { 1 } else { -1 };
                     *shown.get_mut(trial.question.as_str()).unwrap() += 1;
@@ -135,11 +139,11 @@ proptest! {
             let of = |role: Role| form.trials.iter().filter(move |trial| trial.role == role);
             prop_assert_eq!(of(Role::Control).count(), controls as usize);
             prop_assert_eq!(of(Role::Repeat).count(), repeats as usize);
-            prop_assert!(of(Role::Control).all(|trial| trial.left == trial.right));
-            let different: BTreeSet<_> = form.trials.iter().map(|trial| (trial.role, &trial.left, &trial.right)).collect();
+            prop_assert!(of(Role::Control).all(|trial| trial.shown[0] == trial.shown[1]));
+            let different: BTreeSet<_> = form.trials.iter().map(|trial| (trial.role, &trial.shown[0], &trial.shown[1])).collect();
             prop_assert_eq!(different.len(), form.trials.len(), "nothing twice");
             let mut of_controls: BTreeMap<MethodId, i64> = study.method_ids().into_iter().map(|m| (m, 0)).collect();
-            of(Role::Control).for_each(|trial| *of_controls.entry(trial.left.method).or_default() += 1);
+            of(Role::Control).for_each(|trial| *of_controls.entry(trial.shown[0].method).or_default() += 1);
             prop_assert!(even(of_controls.values().copied()), "{of_controls:?}");
             if questionnaire.blocks() == 1 {
                 let repeated: Vec<usize> = of(Role::Repeat).filter_map(|trial| trial.comparison).collect();
@@ -151,7 +155,7 @@ proptest! {
             let mut method_lead: BTreeMap<MethodId, i64> = BTreeMap::new();
             let mut pair_lead: BTreeMap<(MethodId, MethodId), i64> = BTreeMap::new();
             for trial in of(Role::Comparison) {
-                let (left, right) = (trial.left.method, trial.right.method);
+                let (left, right) = (trial.shown[0].method, trial.shown[1].method);
                 *method_lead.entry(left).or_default() += 1;
                 *method_lead.entry(right).or_default() -= 1;
                 *pair_lead.entry((left.min(right), left.max(right))).or_default() += if left < right { 1 } else { -1 };
@@ -166,7 +170,7 @@ proptest! {
                 let (again, first) = (place(repeat, Role::Repeat).unwrap(), place(repeat, Role::Comparison).unwrap());
                 prop_assert!(again.abs_diff(first) >= form.trials.len() / 2);
                 let original = &form.trials[first];
-                prop_assert_eq!((&original.left, &original.right), (&repeat.right, &repeat.left));
+                prop_assert_eq!((&original.shown[0], &original.shown[1]), (&repeat.shown[1], &repeat.shown[0]));
             }
         }
     }
@@ -207,7 +211,7 @@ fn each_form_has_a_twin_with_all_sides_swapped() {
             let (form, twin) =
                 (questionnaire.form(participant), questionnaire.form(participant + questions as usize));
             let sides = |form: &Form| {
-                form.trials.iter().map(|t| (t.left.clone(), t.right.clone())).collect::<Vec<_>>()
+                form.trials.iter().map(|t| (t.shown[0].clone(), t.shown[1].clone())).collect::<Vec<_>>()
             };
             assert_ne!(form.mirrored, twin.mirrored);
             if questions % 2 == 0 {
@@ -245,7 +249,7 @@ fn every_pair_that_is_shown_is_listed_once() {
     assert_eq!(different.len(), pairs.len());
     assert_eq!(pairs.len(), 2 * 27 + 2);
     let shown: BTreeSet<_> =
-        questionnaire.planned().into_iter().flat_map(|form| form.trials).map(|t| (t.left, t.right)).collect();
+        questionnaire.planned().into_iter().flat_map(|form| form.trials).map(|t| t.shown).collect();
     assert!(shown.iter().all(|pair| different.contains(pair)));
     assert_eq!(shown.len(), pairs.len(), "enough participants see all of them");
 }
@@ -260,7 +264,7 @@ fn the_original_shows_everybody_the_same_sides_in_an_order_of_their_own() {
     for form in &forms {
         for trial in &form.trials {
             let listed = &study.comparisons[trial.comparison.unwrap()];
-            assert_eq!((&trial.left, &trial.right), (&listed.left, &listed.right));
+            assert_eq!((&trial.shown[0], &trial.shown[1]), (&listed.left, &listed.right));
         }
     }
     let orders: BTreeSet<Vec<usize>> =
@@ -280,12 +284,12 @@ fn repeats_favour_no_method_no_contrast_and_no_object() {
                 (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
             let mut configurations: BTreeMap<&ConfigurationId, i64> = BTreeMap::new();
             for trial in questionnaire.blocks.iter().flat_map(|block| &block.repeats) {
-                for end in [&trial.left, &trial.right] {
+                for end in [&trial.shown[0], &trial.shown[1]] {
                     *methods.entry(end.method).or_insert(0) += 1;
                     *configurations.entry(end).or_insert(0) += 1;
                 }
-                *objects.entry(&trial.left.object).or_insert(0) += 1;
-                let ends = (trial.left.method, trial.right.method);
+                *objects.entry(&trial.shown[0].object).or_insert(0) += 1;
+                let ends = (trial.shown[0].method, trial.shown[1].method);
                 *contrasts.entry((ends.0.min(ends.1), ends.0.max(ends.1))).or_insert(0) += 1;
             }
             let blocks = questionnaire.blocks();
@@ -296,8 +300,8 @@ fn repeats_favour_no_method_no_contrast_and_no_object() {
                 assert!(objects.len() == 3 && objects.into_values().all(|n| n == 1), "{seed}");
             }
             let controls = &questionnaire.blocks[0].controls;
-            let of_controls: BTreeSet<_> = controls.iter().map(|trial| trial.left.method).collect();
-            let on: BTreeSet<_> = controls.iter().map(|trial| &trial.left.object).collect();
+            let of_controls: BTreeSet<_> = controls.iter().map(|trial| trial.shown[0].method).collect();
+            let on: BTreeSet<_> = controls.iter().map(|trial| &trial.shown[0].object).collect();
             assert_eq!((of_controls.len(), on.len()), (3, 3), "{seed}");
         }
     }
@@ -318,7 +322,7 @@ fn forms_of_one_block_are_what_they_always_were() {
         let text: String = forms
             .iter()
             .flat_map(|form| &form.trials)
-            .map(|t| format!("{:?} {} {} {}\n", t.role, t.question, t.left, t.right))
+            .map(|t| format!("{:?} {} {} {}\n", t.role, t.question, t.shown[0], t.shown[1]))
             .collect();
         let found = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |state, byte| {
             (state ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)

@@ -2,7 +2,7 @@
 
 use super::{Fault, Rule};
 use crate::contrast::{Contrast, TestFamily, contrasts, families};
-use crate::forms::{Questionnaire, Role};
+use crate::forms::Questionnaire;
 use crate::study::Study;
 use std::collections::BTreeSet;
 
@@ -32,10 +32,8 @@ pub fn reach(study: &Study, participants: usize) -> Vec<Reach> {
     let count = questionnaire.blocks();
     // Forms of a block ask the same.
     let block = |block: usize| -> (BTreeSet<usize>, usize) {
-        let asked =
-            questionnaire.form(block).trials.into_iter().filter(|trial| trial.role == Role::Comparison);
         let people = participants / count + usize::from(block < participants % count);
-        (asked.filter_map(|trial| trial.comparison).collect(), people)
+        (questionnaire.form(block).comparisons(study), people)
     };
     let blocks: Vec<(BTreeSet<usize>, usize)> = (0..count).map(block).collect();
     let families = families(&all, &study.file.analysis);

@@ -354,7 +354,7 @@ fn a_language_without_a_text_is_found() {
     let mut study = balanced();
     let section = forms(&mut study);
     section.languages = ["en", "fr"].map(String::from).into();
-    section.choices = ["Left", "No preference", "Right"].map(String::from);
+    section.choices = ["Left", "No preference", "Right"].map(String::from).into();
     let text = |text: &str| text.to_owned();
     study.texts = [(text("fr"), [(text("title"), text("Laquelle ?"))].into())].into();
     let faults = lint(&study);

@@ -2,8 +2,9 @@
 
 use super::configuration;
 use crate::check::{Checker, ConfigError, short};
-use crate::config::{FormsSection, Presentation, StudyFile, ThreadSweepSection};
+use crate::config::{FormsSection, MOST_STEPS, Presentation, StudyFile, ThreadSweepSection, Way};
 use crate::contrast::contrasts;
+use crate::forms::{fewest, several};
 use crate::method::is_summed;
 use crate::study::{Configuration, Study};
 use crate::texts::blanks;
@@ -163,6 +164,61 @@ pub(super) fn check_stills(
     Ok(())
 }
 
+/// Texts of answers: as many as the way to ask has.
+fn check_choices(
+    c: &Checker<'_>,
+    forms: &FormsSection,
+    key: &str,
+    texts: Option<&Vec<String>>,
+) -> Result<(), ConfigError> {
+    let Some(texts) = texts else { return Ok(()) };
+    let way = forms.way.code();
+    if forms.way == Way::Ratings || (forms.way.is_best() && key != "forms.choices") {
+        let limit = format!("must be left out: forms.way = \"{way}\" has no such texts");
+        return c.refuse(key, format!("{texts:?}"), limit);
+    }
+    let wanted = forms.way.answers_of(forms.steps, forms.none).len();
+    if texts.len() != wanted {
+        let limit = format!("must be {wanted} texts: forms.way = \"{way}\" has as many answers");
+        return c.refuse(key, format!("{texts:?}"), limit);
+    }
+    c.texts(key, texts)
+}
+
+/// What those need who do not ask about pairs, without what needs the study's configurations.
+fn check_several(c: &Checker<'_>, forms: &FormsSection) -> Result<(), ConfigError> {
+    if forms.controls > 0 {
+        let limit = format!("must be 0: forms.way = \"{}\" shows nothing beside itself", forms.way.code());
+        return c.refuse("forms.controls", forms.controls, limit);
+    }
+    if forms.max_questions <= forms.repeats {
+        let limit = format!("must be below forms.max_questions = {}", forms.max_questions);
+        return c.refuse("forms.repeats", forms.repeats, limit);
+    }
+    Ok(())
+}
+
+/// What those need who do not ask about pairs.
+pub(super) fn check_shown(c: &Checker<'_>, study: &Study) -> Result<(), ConfigError> {
+    let Some(forms) = study.file.forms.as_ref().filter(|forms| !forms.way.is_of_pairs()) else {
+        return Ok(());
+    };
+    let Some((least, object)) = fewest(study) else { return Ok(()) };
+    if least < forms.way.shown() {
+        let id = &study.file.objects[object].id;
+        let limit = format!("needs as many methods on each object; the comparisons have {least} on {id}");
+        return c.refuse("forms.way", forms.way.code(), limit);
+    }
+    let room = forms.max_questions - forms.repeats;
+    let asked = u32::try_from(several(study, forms.way)).unwrap_or(u32::MAX);
+    let smallest = asked / asked.div_ceil(room).max(1);
+    if forms.repeats > smallest {
+        let limit = format!("a form has {smallest} questions that can be repeated");
+        return c.refuse("forms.repeats", forms.repeats, limit);
+    }
+    Ok(())
+}
+
 pub(super) fn check_forms(
     c: &Checker<'_>,
     file: &StudyFile,
@@ -176,18 +232,21 @@ pub(super) fn check_forms(
     c.count("forms.participants", forms.participants, 1, 100_000)?;
     c.count("forms.controls", forms.controls, 0, configurations.len() as u32)?;
     c.count("forms.max_questions", forms.max_questions, forms.controls + 1, 10_000)?;
+    if !forms.way.is_of_pairs() {
+        check_several(c, forms)?;
+    }
     // The smallest block must hold what is repeated in it.
     let holds = |repeats: u32| match (forms.max_questions - forms.controls).checked_sub(repeats) {
         None | Some(0) => false,
         Some(room) => comparisons / comparisons.div_ceil(room).max(1) >= repeats,
     };
-    if !holds(forms.repeats) {
+    if forms.way.is_of_pairs() && !holds(forms.repeats) {
         let most = (0..forms.repeats).rev().find(|&repeats| holds(repeats)).unwrap_or(0);
         let limit = format!("with forms.max_questions = {} at most {most} fit", forms.max_questions);
         return c.refuse("forms.repeats", forms.repeats, limit);
     }
     c.text("forms.prompt", &forms.prompt, "must say what is asked about each pair")?;
-    c.texts("forms.choices", &forms.choices)?;
+    check_choices(c, forms, "forms.choices", Some(&forms.choices).filter(|texts| !texts.is_empty()))?;
     c.text("forms.consent", &forms.consent, "must be a text")?;
     c.text("forms.instructions", &forms.instructions, "must be a text")?;
     c.count("forms.page_scale", forms.page_scale, 1, 4)?;
@@ -199,11 +258,17 @@ pub(super) fn check_forms(
         let limit = "needs forms.three, the folder where `make three` puts the library that draws models";
         return c.refuse("forms.stimulus", "model", limit);
     }
+    if forms.stimulus == Presentation::Model && !forms.way.is_of_pairs() {
+        let limit = "shows two surfaces, and forms.way does not ask about two";
+        return c.refuse("forms.stimulus", "model", limit);
+    }
     if let Some(least) = forms.min_surface_px {
         c.count("forms.min_surface_px", least, 16, 4096)?;
     }
-    if let Some(choices) = &forms.choices_stacked {
-        c.texts("forms.choices_stacked", choices)?;
+    check_choices(c, forms, "forms.choices_stacked", forms.choices_stacked.as_ref())?;
+    c.count("forms.steps", forms.steps, 2, MOST_STEPS)?;
+    if let Some(ends) = &forms.ends {
+        c.texts("forms.ends", ends)?;
     }
     for (key, completion) in [
         ("forms.completion", &forms.completion),

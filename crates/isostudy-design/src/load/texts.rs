@@ -78,7 +78,7 @@ fn check_texts(
     let of_section = |key: &str| match key {
         "title" => Some("study.title"),
         "prompt" => Some("forms.prompt"),
-        "left" | "none" | "right" => Some("forms.choices"),
+        key if forms.way.answers().iter().any(|of| of.text == key) => Some("forms.choices"),
         key if about.contains_key(key) => Some("forms.about"),
         _ => None,
     };

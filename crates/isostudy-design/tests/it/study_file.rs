@@ -112,7 +112,7 @@ fn names_are_those_that_are_taken() {
             tried += 1;
         }
     }
-    assert_eq!(tried, 27);
+    assert_eq!(tried, 28);
 }
 
 #[test]
@@ -372,8 +372,12 @@ fn full_study() -> StudyFile {
         groups: vec![GroupSection { id: text(), label: text(), members: vec![bi] }],
         forms: Some(FormsSection {
             prompt: text(),
-            choices: [text(), text(), text()],
-            choices_stacked: Some([text(), text(), text()]),
+            way: Way::Graded,
+            choices: vec![text(), text(), text()],
+            choices_stacked: Some(vec![text(), text(), text()]),
+            steps: 5,
+            ends: Some([text(), text()]),
+            none: true,
             min_surface_px: Some(16),
             participants: 1,
             sides: SideRule::Balanced,

@@ -52,10 +52,13 @@ impl<'a> Dealt<'a> {
             // The first two forms of each block are its two ways round.
             for form in (0..2 * dealt.blocks()).map(|participant| dealt.form(participant)) {
                 let mut sheet = vec![None; answers.questions.len()];
-                for trial in form.trials.iter().filter(|trial| trial.left != trial.right) {
+                for trial in &form.trials {
+                    let Some([left, right]) = trial.pair().filter(|[left, right]| left != right) else {
+                        continue;
+                    };
                     let question = beside.get(trial.question.as_str());
                     if let Some(&question) = question {
-                        sheet[question] = Some([item[&trial.left], item[&trial.right]]);
+                        sheet[question] = Some([item[left], item[right]]);
                     }
                 }
                 sheets.insert(way(&form), sheet);
@@ -69,8 +72,9 @@ impl<'a> Dealt<'a> {
         let mut known = BTreeMap::new();
         if !code_of.is_empty() {
             for stimulus in study.stimuli() {
-                let scene = object(&stimulus.left).expect("crossed from these objects");
-                let sides = [item[&stimulus.left], item[&stimulus.right]];
+                let Some([left, right]) = stimulus.pair() else { continue };
+                let scene = object(left).expect("crossed from these objects");
+                let sides = [item[left], item[right]];
                 known.insert(stimulus.code, Shown { scene, sides });
             }
         }

@@ -177,7 +177,7 @@ impl Dealt {
         let sides = |left: &ConfigurationId, right: &ConfigurationId| [item[left], item[right]];
         let stimuli = study.stimuli();
         let stimulus: BTreeMap<[u32; 2], u32> =
-            stimuli.iter().map(|s| sides(&s.left, &s.right)).zip(0..).collect();
+            stimuli.iter().map(|s| sides(&s.shown[0], &s.shown[1])).zip(0..).collect();
         let mut questions: Vec<Question> = study
             .comparisons
             .iter()
@@ -185,10 +185,10 @@ impl Dealt {
             .collect();
         let questionnaire = Questionnaire::of(&study).expect("it plans forms");
         let mut asked = |trial: &isostudy_design::forms::Trial| {
-            let sides = sides(&trial.left, &trial.right);
+            let sides = sides(&trial.shown[0], &trial.shown[1]);
             let known = questions.iter().position(|question| question.id == trial.question);
             let question = known.unwrap_or_else(|| {
-                let own = Question::new(&trial.question, &trial.left.object, "", sides);
+                let own = Question::new(&trial.question, &trial.shown[0].object, "", sides);
                 questions.push(Question { role: trial.role, ..own });
                 questions.len() - 1
             });

@@ -4,7 +4,7 @@ use super::LongFrame;
 use isostudy_design::Study;
 use isostudy_design::forms::Role;
 use isostudy_inference::ballots::{is_asked, method_of_item};
-use isostudy_responses::{Answer, Choice, Responses};
+use isostudy_responses::{Answer, Choice, Responses, Step};
 use polars::prelude::*;
 use std::collections::BTreeSet;
 
@@ -71,6 +71,15 @@ pub(crate) fn answers(
         true => answer.choice,
         false => answer.choice.swapped(),
     };
+    // Names of steps only where people answered in them.
+    let steps: Vec<Step> = match responses.has_steps() {
+        true => Step::ALL.into(),
+        false => Choice::ALL.map(Step::from).into(),
+    };
+    let step = |answer: &Answer| {
+        let own = Step { choice: choice(answer), much: answer.much };
+        steps.iter().position(|&step| step == own).map(|place| place as u32)
+    };
     let all = || responses.answers.iter();
     let place = |name: &str, of: &dyn Fn(&Answer) -> Option<u32>| {
         UInt32Chunked::from_iter_options(name.into(), all().map(of)).into_column()
@@ -88,7 +97,7 @@ pub(crate) fn answers(
         "role" => place(name, &|answer| Some(questions[answer.question as usize].role as u32)),
         "left" => place(name, &|answer| Some(item[seen(answer)[0] as usize])),
         "right" => place(name, &|answer| Some(item[seen(answer)[1] as usize])),
-        "choice" => place(name, &|answer| Some(choice(answer) as u32)),
+        "choice" => place(name, &step),
         "chosen" => place(name, &|answer| answer.chosen().map(|chosen| item[chosen as usize])),
         "sides_recorded" => truth(name, &|_| responses.sides_recorded),
         "place" => place(name, &|answer| answer.order),
@@ -107,7 +116,7 @@ pub(crate) fn answers(
         ("role", ROLES.map(|(_, name)| name.to_owned()).to_vec()),
         ("left", Vec::clone(&items)),
         ("right", Vec::clone(&items)),
-        ("choice", Choice::ALL.map(|choice| choice.name().to_owned()).to_vec()),
+        ("choice", steps.iter().map(|step| step.name().to_owned()).collect()),
         ("chosen", items),
     ];
     LongFrame { name: "answers", frame, texts }
@@ -144,12 +153,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_of_roles_and_choices_are_their_places() {
+    fn numbers_of_roles_are_their_places() {
         for (place, (role, _)) in ROLES.into_iter().enumerate() {
             assert_eq!(role as usize, place);
-        }
-        for (place, choice) in Choice::ALL.into_iter().enumerate() {
-            assert_eq!(choice as usize, place);
         }
     }
 }

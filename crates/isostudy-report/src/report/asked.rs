@@ -19,7 +19,9 @@ pub(super) fn ended(text: &str) -> String {
 /// The comparisons on the forms of those who count. Where the file names nobody, what was asked is what was answered. Whose form is not known was asked what was answered, where questions are
 /// dealt into blocks, and everything elsewhere.
 pub(super) fn asked(study: &Study, answered: &Answered) -> usize {
-    if answered.responses.names_nobody() {
+    // Of ratings and sets it follows from the answers that there are.
+    let of_pairs = study.file.forms.as_ref().is_none_or(|forms| forms.way.is_of_pairs());
+    if answered.responses.names_nobody() || !of_pairs {
         return answered.shown.len();
     }
     let mut given = vec![0; answered.responses.participants.len()];

@@ -31,6 +31,12 @@ pub(super) fn findings(evidence: &Evidence<'_>) -> Vec<Block> {
     found.into_iter().map(Block::Finding).collect()
 }
 
+/// Whether nobody could answer "no preference", so that controls show nothing of a person.
+fn is_forced(evidence: &Evidence<'_>) -> bool {
+    let forms = evidence.study.and_then(|study| study.file.forms.as_ref());
+    forms.is_some_and(|forms| !forms.way.has_ties())
+}
+
 /// Something that is counted of each participant.
 type Count = fn(&Screening) -> u64;
 
@@ -76,6 +82,7 @@ fn screened(evidence: &Evidence<'_>, respondents: &[Respondent]) -> Finding {
     }
     for (name, noun, count) in kinds {
         match sum(respondents, count) {
+            _ if name == "controls" && is_forced(evidence) => {}
             0 => absent.push(name),
             n => judged.push(counted(n as usize, noun)),
         }

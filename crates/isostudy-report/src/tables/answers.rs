@@ -22,9 +22,15 @@ pub(super) fn answers(study: &Study, answers: &Responses, excluded: &BTreeSet<us
     for answer in answers.answers.iter().filter(|answer| is_asked(study, answer)) {
         let cell = &mut said[answer.question as usize][answer.participant as usize];
         let space = if cell.is_empty() { "" } else { " " };
-        *cell = format!("{cell}{space}{}", answers.declared_choice(answer).code());
+        *cell = format!("{cell}{space}{}", answers.declared_step(answer).code());
     }
     let respondents = (0..answers.participants.len()).filter(|participant| !excluded.contains(participant));
+    let caption = match answers.has_steps() {
+        true => {
+            "Answers: LL left much better, L left better, NP equal, R right better, RR right much better; one column a respondent"
+        }
+        false => "Answers: L left, NP no preference, R right; one column a respondent",
+    };
     let mut table = Columns::over(study.comparisons.iter().zip(&said))
         .column("question", "Question", |(comparison, _)| Cell::text(&comparison.question))
         .columns_of(respondents, |all, i| {
@@ -34,7 +40,7 @@ pub(super) fn answers(study: &Study, answers: &Responses, excluded: &BTreeSet<us
                 said => Cell::text(said),
             })
         })
-        .into_table("answers", "Answers: L left, NP no preference, R right; one column a respondent");
+        .into_table("answers", caption);
     let turned = |a: &isostudy_responses::Answer| a.left != answers.questions[a.question as usize].left;
     if answers.answers.iter().any(|a| is_asked(study, a) && turned(a)) {
         let note = "Sides are the questionnaire's; answers to a pair shown the other way round are turned.";

@@ -24,7 +24,10 @@ impl Collector<'_> {
         (header_row, end): (u64, u64),
     ) -> Result<Responses, Fault> {
         if !self.unknown.is_empty() {
-            return Err(Fault::UnknownAnswers { cells: self.unknown, known: self.mapping.words.summary() });
+            return Err(Fault::UnknownAnswers {
+                cells: self.unknown,
+                known: self.mapping.words.summary(self.way),
+            });
         }
         if let Some((Place { row, column }, cells)) = self.missing {
             let action = match cells {
@@ -72,6 +75,7 @@ impl Collector<'_> {
             sides,
             stimuli: self.stimuli.names,
             screens: self.screens,
+            judged: Vec::new(),
             people: Vec::new(),
             without_participant,
             unknown_stimuli,
@@ -125,7 +129,7 @@ impl Collector<'_> {
         self.report.row(Kind::Noted, row, action);
         let mut kept = vec![true; self.answers.len()];
         for [first, second] in halves.into_iter().map(|half| half.map(|i| i as usize)) {
-            self.answers[first].choice = Choice::NoPreference;
+            (self.answers[first].choice, self.answers[first].much) = (Choice::NoPreference, false);
             kept[second] = false;
         }
         let (mut of_answer, mut of_row) = (kept.iter(), kept.iter());

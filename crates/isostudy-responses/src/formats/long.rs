@@ -210,8 +210,8 @@ impl Rows<'_> {
             "" => Cow::Owned(self.collector.id_of(question).to_owned()),
             asked => Cow::Borrowed(asked),
         };
-        let choice = match self.collector.reply(record.cell(self.columns.choice), place, &asked) {
-            Reply::Choice(choice) => choice,
+        let step = match self.collector.reply(record.cell(self.columns.choice), place, &asked) {
+            Reply::Step(step) => step,
             Reply::Unknown => return Ok(()),
             Reply::Blank => {
                 let action =
@@ -230,7 +230,8 @@ impl Rows<'_> {
             rt_ms,
             stimulus,
             screen,
-            ..Answer::new(participant, question, [left, right], choice)
+            much: step.much,
+            ..Answer::new(participant, question, [left, right], step.choice)
         };
         match named {
             Some(participant) => {

@@ -6,7 +6,7 @@
 
 use crate::address;
 use crate::asked;
-use crate::choice::Choice;
+use crate::choice::{Choice, Step};
 use crate::collect::{Asking, Collector, Place, Reply};
 use crate::decode::records::{Record, is_blank, trim};
 use crate::decode::source::Source;
@@ -183,7 +183,7 @@ impl<'a> Rows<'a> {
             // What the form does not ask is not left unanswered.
             all += usize::from(sides.is_some() || sheet.is_none());
             match (reply, sides) {
-                (Reply::Choice(choice), Some(sides)) => {
+                (Reply::Step(Step { choice, much }), Some(sides)) => {
                     answered += 1;
                     *kept = Some(choice);
                     let question = match self.plan.questions().get(number as usize) {
@@ -194,10 +194,10 @@ impl<'a> Rows<'a> {
                         }
                     };
                     let order = orders.get(&number).copied();
-                    let answer = Answer { order, ..Answer::new(participant, question, sides, choice) };
+                    let answer = Answer { order, much, ..Answer::new(participant, question, sides, choice) };
                     self.collector.answer(answer, row);
                 }
-                (Reply::Choice(_), None) => {
+                (Reply::Step(_), None) => {
                     let (question, form) = (shorten(&asked.id), shorten(form.unwrap_or_default()));
                     return Err(match sheet {
                         Some(_) => Fault::NotInForm { row, form, question },

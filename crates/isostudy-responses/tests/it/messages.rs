@@ -125,7 +125,9 @@ fn messages_are_worded_as_in_their_file() {
 
     said += "\n# Where sides come from\n";
     let sources = [SidesSource::InFile, SidesSource::FromCodeNames, SidesSource::FromForms];
-    for source in sources.into_iter().chain([SidesSource::AsListed, SidesSource::Unknown]) {
+    for source in
+        sources.into_iter().chain([SidesSource::AsListed, SidesSource::NoSides, SidesSource::Unknown])
+    {
         line(&mut said, &format_args!("{}: {}", source.name(), source.sentence()));
     }
     let counted = Responses { without_participant: 2, ..Responses::default() };

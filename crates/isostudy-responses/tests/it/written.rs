@@ -129,6 +129,7 @@ fn pressed_left(study: &isostudy_design::Study) -> isostudy_responses::Reading {
             group,
             left,
             right,
+            ..
         } = line;
         let role = format!("{role:?}").to_lowercase();
         let line = format!(

@@ -83,6 +83,7 @@ fn key(forms: usize) -> Vec<isostudy_design::forms::KeyEntry> {
         group: String::new(),
         left: String::new(),
         right: String::new(),
+        shown: String::new(),
     };
     (1..=forms).flat_map(|form| (0..3).map(move |place| (form, place))).map(line).collect()
 }

@@ -5,7 +5,7 @@ use super::addresses::Peer;
 use super::api::Failure;
 use super::stopping::{self, Standing};
 use super::{SHORTEST_TOKEN, Settings, Shared, Site};
-use crate::export::{self, HEADER};
+use crate::export;
 use crate::journal::{Journal, OptionCount, Summary};
 use crate::{people, shown};
 use axum::http::{HeaderMap, header};
@@ -108,7 +108,7 @@ pub(super) async fn answers(
     authorised(&site, peer, &headers).await?;
     let given = site.journal.read(|journal| journal.given()).await?;
     let lines = export::lines(&given, &site.settings.key).map_err(Failure::Key)?;
-    Ok(csv(export::csv(&lines, &HEADER)))
+    Ok(csv(export::csv(&lines, &export::header(site.settings.file.way))))
 }
 
 /// `GET /api/admin/identities.csv`: what a panel says of participants.

@@ -5,6 +5,7 @@
 #![cfg(target_os = "linux")]
 
 use crate::http::{get, post, raw};
+use isostudy_design::config::Way;
 use isostudy_design::forms::{FormEntry, FormFile, KeyEntry, Role};
 use isostudy_serve::journal::Loss;
 use isostudy_serve::page::{Media, MediaFormat};
@@ -38,6 +39,7 @@ fn settings(folder: &Path, loss: Loss) -> Settings {
         group: "g".into(),
         left: "a".into(),
         right: "b".into(),
+        shown: String::new(),
     };
     let key: Vec<KeyEntry> = (2..2 + QUESTIONS).map(place).collect();
     let questions = key.iter().map(|entry| entry.stimulus.clone()).collect();
@@ -47,8 +49,12 @@ fn settings(folder: &Path, loss: Loss) -> Settings {
             study: "trial".into(),
             title: "Trial".into(),
             prompt: "Which?".into(),
-            choices: ["Left".into(), "None".into(), "Right".into()],
+            way: Way::Pairs,
+            choices: vec!["Left".into(), "None".into(), "Right".into()],
             choices_stacked: None,
+            steps: 7,
+            ends: None,
+            none: false,
             min_surface_px: None,
             languages: vec!["en".into()],
             texts: std::collections::BTreeMap::new(),

@@ -65,7 +65,7 @@ fn controls_repeats_and_time() {
         circumstances: &circumstances,
         scenes: &scenes,
         shown_ms: Some(650.0),
-        sides_unknown: false,
+        ..Protocol::default()
     };
     let seen = screening_with(&ballots, &protocol)[0];
     assert_eq!((seen.answers, seen.controls, seen.controls_decided), ([3, 0, 0], 3, 2));
@@ -79,6 +79,8 @@ fn controls_repeats_and_time() {
         [Flag::Controls, Flag::Time]
     );
     assert_eq!(seen.flags(&Protocol::default()), [Flag::Controls]);
+    // Who has to choose decides every control.
+    assert_eq!(seen.flags(&Protocol { forced: true, ..Protocol::default() }), []);
     // Nothing known but the ballots: no order, no time, and no question was answered twice.
     let bare = screening(&ballots)[0];
     assert_eq!((bare.repeats, bare.timed, bare.consistency()), (0, 0, None));

@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             place()
         );
         let text = input::text(path)?;
-        let given = download::read(&text, &file.study).map_err(|error| match error {
+        let given = download::read(&text, &file).map_err(|error| match error {
             DownloadError::Columns { .. } => anyhow!(
                 "{}: {error}. `isostudy analyse {} --responses {0}` reads answers of other kinds",
                 place(),
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         again += download::add(&mut all, given).with_context(place)?;
     }
     let given: Vec<Given> = all.into_values().collect();
-    store::write_whole(&arguments.out, csv(&given, &key)?.as_bytes())?;
+    store::write_whole(&arguments.out, csv(&file, &given, &key)?.as_bytes())?;
     match &arguments.about {
         Some(path) => {
             let attention = Questionnaire::of(&study).map(|of| of.attention()).unwrap_or_default();

@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         stored.departures,
         said,
     );
-    let mut files = vec![("answers.csv", csv(&given, &key)?)];
+    let mut files = vec![("answers.csv", csv(&file, &given, &key)?)];
     if !cameras.is_empty() {
         codebook.push_str(deidentify::CAMERAS);
         files.push(("cameras.csv", cameras::csv(&cameras, &key)));

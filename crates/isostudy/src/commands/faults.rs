@@ -92,8 +92,11 @@ pub(super) fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Ve
         study.configurations.iter().map(|c| &c.id).zip(read.iter().map(|(facts, _, _)| facts)).collect();
     let mut pairs = Vec::new();
     for stimulus in study.stimuli() {
-        let (left, right) = (by_id[&stimulus.left], by_id[&stimulus.right]);
-        pairs.push((stimulus.code.clone(), left.clone(), right.clone()));
+        // Whatever stands in one file is compared with what stands first.
+        for other in stimulus.shown.iter().skip(1) {
+            let (left, right) = (by_id[&stimulus.shown[0]], by_id[other]);
+            pairs.push((stimulus.code.clone(), left.clone(), right.clone()));
+        }
     }
     let mut faults = lint_stimuli(study, &pairs);
     faults.extend(said_by_files(study, &results.join("stimuli/pairs"))?);

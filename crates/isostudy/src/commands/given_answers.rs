@@ -4,8 +4,8 @@ use super::study_forms::forms;
 use crate::{kept_answers, store};
 use anyhow::Result;
 use isostudy_design::Study;
-use isostudy_design::forms::KeyEntry;
-use isostudy_serve::export::{self, Given, HEADER};
+use isostudy_design::forms::{FormFile, KeyEntry};
+use isostudy_serve::export::{self, Given};
 use isostudy_serve::{deidentify, journal};
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ pub(super) fn served(study: &Study, folder: &Path) -> Result<Option<PathBuf>> {
     let (file, key, _) = forms(study)?;
     let given = deidentify::deidentified(&journal::kept(folder, &file.study)?.given);
     let path = folder.join("answers.csv");
-    store::write_whole(&path, csv(&given, &key)?.as_bytes())?;
+    store::write_whole(&path, csv(&file, &given, &key)?.as_bytes())?;
     tell!("answers of `isostudy serve`: {}", path.display());
     Ok(Some(path))
 }
@@ -26,8 +26,8 @@ pub(super) fn served(study: &Study, folder: &Path) -> Result<Option<PathBuf>> {
 ///
 /// # Errors
 /// If an answer is to a question that the key has not.
-pub(super) fn csv(given: &[Given], key: &[KeyEntry]) -> Result<String> {
-    Ok(export::csv(&export::lines(given, key)?, &HEADER))
+pub(super) fn csv(file: &FormFile, given: &[Given], key: &[KeyEntry]) -> Result<String> {
+    Ok(export::csv(&export::lines(given, key)?, &export::header(file.way)))
 }
 
 /// How many people gave them.

@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         panel: section.panel,
         quotas: questionnaire.quotas(),
         attention: questionnaire.attention(),
-        rule: stopping::rule(&study, &key),
+        rule: stopping::rule(&study, &file, &key),
         media,
         library,
         stimuli: stimuli(&out),

@@ -177,20 +177,22 @@ impl Pipeline<'_> {
                 halves.insert(&configuration.id, half);
             }
             let question = |s: &Stimulus| {
+                let Some([left, right]) = s.pair() else { return "shown" };
                 let shows = |c: &&isostudy_design::Comparison| {
-                    (&c.left, &c.right) == (&s.left, &s.right) || (&c.left, &c.right) == (&s.right, &s.left)
+                    (&c.left, &c.right) == (left, right) || (&c.left, &c.right) == (right, left)
                 };
                 self.study
                     .comparisons
                     .iter()
                     .find(shows)
-                    .map_or(if s.left == s.right { "control" } else { "training" }, |c| c.question.as_str())
+                    .map_or(if left == right { "control" } else { "training" }, |c| c.question.as_str())
             };
             let pairs: Vec<(String, Pixmap)> = stimuli
                 .iter()
                 .map(|s| {
-                    let label = format!("{}\n{}: {} | {}", s.code, question(s), s.left, s.right);
-                    (label, picture::side_by_side(&halves[&s.left], &halves[&s.right]))
+                    let names: Vec<String> = s.shown.iter().map(ToString::to_string).collect();
+                    let label = format!("{}\n{}: {}", s.code, question(s), names.join(" | "));
+                    (label, picture::in_a_row(&s.shown.iter().map(|id| &halves[id]).collect::<Vec<_>>()))
                 })
                 .collect();
             writer.write(

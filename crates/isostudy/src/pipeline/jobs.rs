@@ -83,7 +83,10 @@ impl Job<'_> {
             Self::Budget(purpose, of) => format!("budget/{}/{}", purpose_name(*purpose), of.id),
             Self::Mesh(purpose, of) => format!("mesh/{}/{}", purpose_name(*purpose), of.id),
             Self::Turntable(of) => format!("turntable/{}", of.id),
-            Self::Pair(of) => format!("pair/{}~{}", of.left, of.right),
+            Self::Pair(of) => {
+                let names: Vec<String> = of.shown.iter().map(ToString::to_string).collect();
+                format!("pair/{}", names.join("~"))
+            }
             Self::Still(of) => format!("still/{}", of.id),
             Self::ViewerMesh(of, factor) => format!("viewer/{}/{factor}", of.id),
             Self::Timings => "bench/short".into(),
@@ -127,7 +130,7 @@ impl Job<'_> {
             (Self::Turntable(of) | Self::ViewerMesh(of, _), Job::Mesh(Purpose::Stimulus, other)) => {
                 of == other
             }
-            (Self::Pair(of), Job::Turntable(other)) => [&of.left, &of.right].contains(&&other.id),
+            (Self::Pair(of), Job::Turntable(other)) => of.shown.contains(&other.id),
             (Self::Timings | Self::OnMachine(_), Job::Budget(Purpose::Benchmark, _)) => true,
             _ => false,
         }
@@ -279,9 +282,9 @@ impl<'a> Pipeline<'a> {
         match job {
             Job::Budget(purpose, of) => self.budgets(&[*purpose], std::slice::from_ref(&of.id)),
             Job::Mesh(purpose, of) => self.meshes(&[*purpose], std::slice::from_ref(&of.id)).map(drop),
-            Job::Turntable(of) => self.with_stimuli([&of.id], |_, _| Ok(())),
-            Job::Pair(of) => self.with_stimuli([&of.left, &of.right], |pipeline, turntables| {
-                pipeline.pair(of, &turntables[0], &turntables[1]).map(drop)
+            Job::Turntable(of) => self.with_stimuli(std::slice::from_ref(&of.id), |_, _| Ok(())),
+            Job::Pair(of) => self.with_stimuli(&of.shown, |pipeline, turntables| {
+                pipeline.pair(of, &turntables.iter().collect::<Vec<_>>()).map(drop)
             }),
             Job::Still(of) => {
                 let step = Step::begin("stills", 1, TICKS_A_MESH);
@@ -345,14 +348,15 @@ impl<'a> Pipeline<'a> {
     }
 
     /// Turntables of some configurations, in their order, unless one of them is left out.
-    fn with_stimuli<const N: usize>(
+    fn with_stimuli(
         &self,
-        ids: [&ConfigurationId; N],
-        work: impl FnOnce(&Self, [Stamp; N]) -> Result<()>,
+        ids: &[ConfigurationId],
+        work: impl FnOnce(&Self, &[Stamp]) -> Result<()>,
     ) -> Result<()> {
-        let meshes = self.stimulus_meshes(&ids.map(Clone::clone))?;
+        let meshes = self.stimulus_meshes(ids)?;
         let (codes, _) = self.study.code_names();
-        let step = Step::begin("turntables", N, N * self.study.file.turntable.frames as usize);
+        let frames = self.study.file.turntable.frames as usize;
+        let step = Step::begin("turntables", ids.len(), ids.len() * frames);
         let mut stamps = Vec::new();
         for id in ids {
             let Some(configuration) = self.selected(std::slice::from_ref(id)).first().copied() else {
@@ -366,8 +370,7 @@ impl<'a> Pipeline<'a> {
             stamps.push(stamp);
         }
         step.end();
-        let Ok(stamps) = stamps.try_into() else { unreachable!("one each") };
-        work(self, stamps)
+        work(self, &stamps)
     }
 
     /// What a job depends on beside those that it needs. A stage may depend on what they find; this is known before.

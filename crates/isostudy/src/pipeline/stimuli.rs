@@ -104,13 +104,14 @@ impl Pipeline<'_> {
 
     /// Composes every pair that anybody is shown from two finished turntables.
     pub(crate) fn pairs(&self, turntables: &[Stamp]) -> Result<Vec<Stamp>> {
-        let shown = |of: &Stimulus| !self.has_failed(&of.left) && !self.has_failed(&of.right);
+        let shown = |of: &Stimulus| of.shown.iter().all(|id| !self.has_failed(id));
         let stimuli: Vec<Stimulus> = self.study.stimuli().into_iter().filter(shown).collect();
         let by_id: HashMap<&ConfigurationId, &Stamp> =
             self.selected(&[]).into_iter().map(|c| &c.id).zip(turntables).collect();
         let step = Step::begin("pairs", stimuli.len(), stimuli.len());
         let one = |stimulus: &Stimulus| {
-            let stamp = self.pair(stimulus, by_id[&stimulus.left], by_id[&stimulus.right])?;
+            let turntables: Vec<&Stamp> = stimulus.shown.iter().map(|id| by_id[id]).collect();
+            let stamp = self.pair(stimulus, &turntables)?;
             step.tick(1);
             step.count(stamp.redone);
             Ok(stamp)
@@ -120,18 +121,19 @@ impl Pipeline<'_> {
         Ok(stamps)
     }
 
-    pub(super) fn pair(&self, stimulus: &Stimulus, left: &Stamp, right: &Stamp) -> Result<Stamp> {
-        let Stimulus { code, left: left_id, right: right_id } = stimulus;
+    pub(super) fn pair(&self, stimulus: &Stimulus, turntables: &[&Stamp]) -> Result<Stamp> {
+        let Stimulus { code, shown } = stimulus;
         let scale = self.study.file.stimuli.pair_scale;
-        let inputs = Inputs::of_sources(source_digests::PICTURES)
-            .stamp(left)
-            .stamp(right)
-            .text("code", code)
-            .value("scale", &scale);
-        self.stage(&format!("pair/{left_id}~{right_id}"), inputs, |writer| {
-            let (left, right) = (self.read_animation(left)?, self.read_animation(right)?);
+        let inputs = Inputs::of_sources(source_digests::PICTURES);
+        let inputs = turntables.iter().fold(inputs, |inputs, turntable| inputs.stamp(turntable));
+        let inputs = inputs.text("code", code).value("scale", &scale);
+        let names: Vec<String> = shown.iter().map(ToString::to_string).collect();
+        self.stage(&format!("pair/{}", names.join("~")), inputs, |writer| {
+            let turned = turntables.iter().map(|turntable| self.read_animation(turntable));
+            let turned = turned.collect::<Result<Vec<Animation>>>()?;
+            let row = Animation::in_a_row(&turned)?.context("something is shown")?;
             let mut gif = Vec::new();
-            left.side_by_side(&right)?.scaled(scale).write_gif(&mut gif)?;
+            row.scaled(scale).write_gif(&mut gif)?;
             writer.write(&format!("{PAIRS}/{code}.gif"), &gif)
         })
     }
@@ -188,9 +190,16 @@ impl Pipeline<'_> {
         for (configuration, code) in self.study.configurations.iter().zip(&turntables) {
             key += &format!("{TURNTABLES}/{code}.gif,,{},\n", configuration.id);
         }
-        for Stimulus { code, left, right } in self.study.stimuli() {
+        for stimulus in self.study.stimuli() {
+            let code = &stimulus.code;
+            let Some([left, right]) = stimulus.pair() else {
+                // In the place of the left one all that is shown, in order.
+                let names: Vec<String> = stimulus.shown.iter().map(ToString::to_string).collect();
+                key += &format!("{PAIRS}/{code}.gif,,{},\n", names.join(" "));
+                continue;
+            };
             let shows = |c: &&Comparison| {
-                (&c.left, &c.right) == (&left, &right) || (&c.left, &c.right) == (&right, &left)
+                (&c.left, &c.right) == (left, right) || (&c.left, &c.right) == (right, left)
             };
             let question = self.study.comparisons.iter().find(shows).map_or("", |c| c.question.as_str());
             key += &format!("{PAIRS}/{code}.gif,{question},{left},{right}\n");

@@ -20,7 +20,7 @@ fn file(languages: &[&str], own: &[(&str, &[(&str, &str)])]) -> FormFile {
 fn what_the_study_says_stands_in_its_first_language_and_what_it_leaves_out_is_shipped() {
     let mut german = file(&["de"], &[]);
     german.prompt = "Welche?".into();
-    german.choices = ["Links", "Weder noch", "Rechts"].map(Into::into);
+    german.choices = ["Links", "Weder noch", "Rechts"].map(Into::into).into();
     german.instructions = english()["instructions"].clone();
     german.consent = english()["consent"].clone();
     let [spoken] = &german.spoken()[..] else { panic!("one language") };
@@ -34,10 +34,10 @@ fn what_the_study_says_stands_in_its_first_language_and_what_it_leaves_out_is_sh
     assert_eq!(text("consent"), shipped("de").unwrap()["consent"]);
     assert_eq!(german.missing_texts(), []);
     // Words of its own stay where the surfaces stand, unless it says otherwise.
-    german.choices = ["A", "=", "B"].map(Into::into);
+    german.choices = ["A", "=", "B"].map(Into::into).into();
     let texts = german.spoken().remove(0).texts;
     assert_eq!([&texts["upper"], &texts["none_stacked"], &texts["lower"]], ["A", "=", "B"]);
-    german.choices_stacked = Some(["A oben", "=", "B unten"].map(Into::into));
+    german.choices_stacked = Some(["A oben", "=", "B unten"].map(Into::into).into());
     let texts = german.spoken().remove(0).texts;
     assert_eq!([&texts["upper"], &texts["none_stacked"], &texts["lower"]], ["A oben", "=", "B unten"]);
 }
@@ -45,13 +45,13 @@ fn what_the_study_says_stands_in_its_first_language_and_what_it_leaves_out_is_sh
 #[test]
 fn english_without_a_word_on_languages_is_as_it_was() {
     let mut file = file(&["en"], &[]);
-    file.choices = ["Left", "No preference", "Right"].map(Into::into);
+    file.choices = ["Left", "No preference", "Right"].map(Into::into).into();
     let texts = file.spoken().remove(0).texts;
     assert_eq!(
         [&texts["upper"], &texts["none_stacked"], &texts["lower"]],
         ["Top", "No preference", "Bottom"]
     );
-    file.choices = ["Left one", "Neither", "Right"].map(Into::into);
+    file.choices = ["Left one", "Neither", "Right"].map(Into::into).into();
     let texts = file.spoken().remove(0).texts;
     assert_eq!([&texts["upper"], &texts["none_stacked"], &texts["lower"]], ["Left one", "Neither", "Bottom"]);
     assert_eq!(file.missing_texts(), []);
@@ -62,7 +62,7 @@ fn what_a_language_lacks_is_named() {
     let mut two = file(&["en", "de"], &[]);
     two.consent = english()["consent"].clone();
     two.instructions = english()["instructions"].clone();
-    two.choices = ["Left", "No preference", "Right"].map(Into::into);
+    two.choices = ["Left", "No preference", "Right"].map(Into::into).into();
     assert_eq!(two.missing_texts(), [("de", vec!["prompt".to_owned(), "title".to_owned()])]);
     // A consent of its own is asked for in the other language too.
     two.consent = "Say yes.".into();

@@ -3,6 +3,7 @@
 use super::*;
 use crate::config::FamilyRule;
 use crate::contrast::Family;
+use crate::forms::Role;
 use crate::lint::lint;
 use crate::load::tests::load;
 use crate::method::{ConfigurationId, MethodId};

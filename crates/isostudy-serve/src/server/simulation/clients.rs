@@ -35,13 +35,14 @@ impl Simulation<'_> {
             return;
         }
         let chance = &mut self.chance;
+        let answers = self.settings.file.answers();
         let client = &mut self.clients[number];
         let Some(token) = client.token.clone() else {
             self.network.push((number, Asked::Begin { panel: client.panel }));
             return;
         };
         let mut say = || Said {
-            choice: [Choice::L, Choice::Np, Choice::R][chance.below(3)],
+            choice: Choice::of_code(answers[chance.below(answers.len())].code).expect("an answer"),
             rt_ms: chance.below(9000) as u32,
             width: chance.percent(50).then(|| 300 + chance.below(1000) as u32),
         };

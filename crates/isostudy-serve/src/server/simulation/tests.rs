@@ -8,12 +8,20 @@ use super::{Checked, FOLDER, Outcome, Plan, QUESTIONS, Simulation, TOKEN, simula
 use crate::journal::Loss;
 use crate::page::{Media, MediaFormat};
 use crate::server::{Limits, Settings};
+use isostudy_design::config::Way;
 use isostudy_design::forms::{FormEntry, FormFile, KeyEntry, Role};
 use std::net::SocketAddr;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 const FORMS: usize = 3;
+
+/// People are asked in a way that the seed says.
+fn settings_of(seed: u64) -> Settings {
+    let way = Way::ALL[(seed % Way::ALL.len() as u64) as usize];
+    let plain = settings();
+    Settings { file: FormFile { way, ..plain.file.clone() }, ..plain }
+}
 
 fn settings() -> Settings {
     let stimulus = |form: usize, place: usize| format!("pair{form}{place}");
@@ -32,6 +40,7 @@ fn settings() -> Settings {
         group: "g".into(),
         left: "a".into(),
         right: "b".into(),
+        shown: String::new(),
     };
     Settings {
         file: FormFile { forms: (1..=FORMS).map(form).collect(), ..crate::export::tests::empty_file() },
@@ -99,10 +108,10 @@ fn sessions(wanted: u64) {
     let (number, done) = (AtomicU64::new(0), AtomicU64::new(0));
     let totals: [AtomicU64; 4] = Default::default();
     on_all_threads(|| {
-        let (machine, settings) = (Simulated::new(), settings());
+        let machine = Simulated::new();
         while done.load(Ordering::Relaxed) < wanted {
             let seed = first.wrapping_add(number.fetch_add(1, Ordering::Relaxed));
-            match attempt(&machine, &settings, wild(seed)) {
+            match attempt(&machine, &settings_of(seed), wild(seed)) {
                 Ok(Outcome { sessions, answers, operations, failed, ends, .. }) => {
                     done.fetch_add(sessions as u64, Ordering::Relaxed);
                     let counts = [answers as u64, operations, failed, ends];
@@ -148,7 +157,7 @@ fn one() {
     let given = std::env::var("ISOSTUDY_SEED").ok().and_then(|text| text.parse().ok());
     let plan = Plan { told: given.is_some(), ..wild(given.unwrap_or(first_seed())) };
     with_timers(|| {
-        let (machine, settings) = (Simulated::new(), settings());
+        let (machine, settings) = (Simulated::new(), settings_of(plan.seed));
         let once = simulate(&machine, &settings, plan).unwrap_or_else(|wrong| panic!("{wrong}"));
         let again = simulate(&machine, &settings, Plan { told: false, ..plan });
         assert_eq!(again, Ok(once), "a seed says all");

@@ -50,9 +50,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NU", value_parser = deviation, default_value_t = 0.3)]
     ties: f64,
     /// How people are asked: pairs (left, no preference, right), forced (left, right), graded (five steps), best-of-3, best-of-4 or
-    /// ratings (each of the two from 1 to 7)
-    #[arg(long, value_name = "WAY", value_parser = way, default_value = Way::Pairs.code())]
-    way: Way,
+    /// ratings (each of the two from 1 to 7) [default: forms.way of the study]
+    #[arg(long, value_name = "WAY", value_parser = way)]
+    way: Option<Way>,
     /// Studies to simulate for each share
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u64).range(parts::STUDIES))]
     studies: u64,
@@ -259,6 +259,7 @@ fn assumptions(arguments: &Arguments, study: &Study, planned: usize) -> Result<A
     }
     participants.sort_unstable();
     participants.dedup();
+    let asked = Way::of_code(forms_section(study)?.way.code()).unwrap_or_default();
     Ok(Assumptions {
         participants,
         shares: distinct(&arguments.shares),
@@ -266,7 +267,7 @@ fn assumptions(arguments: &Arguments, study: &Study, planned: usize) -> Result<A
         person_sd: spread(arguments, study)?,
         object_sd: arguments.object_sd,
         ties: arguments.ties,
-        way: arguments.way,
+        way: arguments.way.unwrap_or(asked),
         studies: arguments.studies,
         seed: arguments.seed,
     })

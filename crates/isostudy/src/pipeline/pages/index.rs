@@ -167,6 +167,9 @@ impl Pipeline<'_> {
 
     /// Those that were made.
     fn pair_cards(&self, votes: &BTreeMap<String, Votes>) -> Vec<Card> {
+        if self.study.file.forms.as_ref().is_some_and(|forms| !forms.way.is_of_pairs()) {
+            return Vec::new();
+        }
         let (_, codes) = self.study.code_names();
         let card = |(comparison, code): (&Comparison, String)| {
             let failed = self.has_failed(&comparison.left) || self.has_failed(&comparison.right);
