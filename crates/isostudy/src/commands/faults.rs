@@ -114,7 +114,8 @@ fn large_models(study: &Study, results: &Path) -> Result<Vec<Fault>> {
         }
         let bytes = std::fs::metadata(&path).with_context(|| path.display().to_string())?.len();
         if bytes > MOST_BYTES {
-            let evidence = format!("{} and {} take {:.1} MB", of.left, of.right, bytes as f64 / 1e6);
+            let shown: Vec<String> = of.shown.iter().map(ToString::to_string).collect();
+            let evidence = format!("{} take {:.1} MB", shown.join(" and "), bytes as f64 / 1e6);
             faults.push(Fault { rule: Rule::ModelsTooLarge, place: of.code, evidence });
         }
     }

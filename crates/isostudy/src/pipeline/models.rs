@@ -90,7 +90,9 @@ impl Pipeline<'_> {
     }
 
     fn model(&self, stimulus: &Stimulus, meshes: &Meshes) -> Result<Stamp> {
-        let Stimulus { code, left, right } = stimulus;
+        let Stimulus { code, shown } = stimulus;
+        // Models are of ways to ask that show two.
+        let [left, right] = [&shown[0], &shown[1]];
         let sides = [left, right].map(|id| self.configuration(id));
         let looks = sides.map(|side| self.study.look(side));
         let (camera, crease) = (camera(self.study, sides[0]), self.study.file.shading.crease_deg);
