@@ -111,9 +111,9 @@ test('five steps have five buttons, in words of the study and of each language',
 });
 
 test('one surface at a time is rated on a scale', async () => {
-  const made = asking('ratings', 'way = "ratings"\nsteps = 5\nends = ["awful", "splendid"]', several);
+  const made = asking('ratings', 'way = "ratings"\nsteps = 5\nends = ["awful", "splendid"]', (text) => several(text).replace('max_questions = 6', 'max_questions = 10'));
   const codes = ['1', '2', '3', '4', '5'];
-  await walk(made, 'ratings', codes, codes, { practice: 2 });
+  await walk(made, 'ratings', codes, codes, { asked: 10, practice: 2 });
   const page = await open(`${pathToFileURL(path.join(made.out, 'bundle/index.html')).href}?form=3`, { viewport: { width: 1280, height: 800 } });
   await page.getByRole('button', { name: 'I agree, begin' }).click();
   await page.getByText('say how much you like it').waitFor();

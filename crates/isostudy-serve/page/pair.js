@@ -17,7 +17,8 @@ window.isostudyPair = async (study, text, file, box, make, changed, events) => {
   // Two have sides; others have numbers.
   const COUNT = { ratings: 1, 'best-of-3': 3, 'best-of-4': 4 }[study.way] ?? 2;
   const PAIR = COUNT === 2;
-  const NAMES = PAIR ? [text('upper'), text('lower')] : ['first', 'second', 'third', 'fourth'].map((key) => text(key));
+  const NUMBERED = COUNT > 2 ? ['first', 'second', 'third', 'fourth'].slice(0, COUNT) : [];
+  const NAMES = PAIR ? [text('upper'), text('lower')] : NUMBERED.map((key) => text(key));
   const SAID = {
     turning: ['left_turning', 'right_turning', 'number_turning'],
     stopped: ['left_stopped', 'right_stopped', 'number_stopped'],
@@ -30,7 +31,7 @@ window.isostudyPair = async (study, text, file, box, make, changed, events) => {
     const moving = video || isModel ? null : make('img', { alt: said(i, 'turning'), draggable: false, hidden: true });
     if (moving) [moving.style.width, moving.style.left] = [`${100 * COUNT}%`, `${-100 * i}%`];
     const still = make('canvas', { role: 'img', 'aria-label': said(i, video || isModel ? 'surface' : 'stopped') });
-    const name = make('span', { className: 'name', 'aria-hidden': 'true' }, NAMES[i]);
+    const name = make('span', { className: 'name', 'aria-hidden': 'true' }, NAMES[i] ?? '');
     return { moving, still, element: make('div', { className: 'half' }, ...(moving ? [moving] : []), still, name) };
   });
 

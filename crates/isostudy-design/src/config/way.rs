@@ -189,8 +189,10 @@ impl Way {
     fn own_keys(self) -> impl Iterator<Item = &'static str> {
         let answers = self.answers().iter().flat_map(|of| [of.text, of.stacked]);
         let ends = ENDS.into_iter().filter(move |_| self == Self::Ratings);
+        // Two surfaces may stand one over the other.
+        let sides = ["upper", "lower"].into_iter().filter(move |_| self.is_of_pairs());
         let numbered = NUMBERED.into_iter().filter(move |_| !self.is_of_pairs());
-        answers.chain(self.texts().iter().map(|(_, own)| *own)).chain(ends).chain(numbered)
+        answers.chain(self.texts().iter().map(|(_, own)| *own)).chain(ends).chain(sides).chain(numbered)
     }
 
     /// Whether a page of this way has no use for the text of a key, which is of another way alone.
