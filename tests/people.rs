@@ -187,7 +187,7 @@ impl Person {
                 (404, ..) if question == 0 => return Err(Forgotten),
                 (status, text, _) => panic!("{status} {text}"),
             }
-            if self.number % 4 == 0 {
+            if self.number.is_multiple_of(4) {
                 choice = if choice == "R" { "L" } else { "R" };
                 let mut changed: Value = serde_json::from_str(&answer(&session, question, choice)).unwrap();
                 changed["change"] = json!(1);

@@ -189,7 +189,7 @@ fn five_steps_give_the_planted_worths_and_all_that_pairs_give() {
     let counts = table(fixture.out(), "answer_counts");
     assert_eq!(counts.len(), 27);
     assert!(counts.iter().all(|row| row["no_preference"] != "36") && report.contains("stands highest"));
-    assert!(table(fixture.out(), "tests").iter().filter(|row| row["p_sign_flip"] != "").count() > 27);
+    assert!(table(fixture.out(), "tests").iter().filter(|row| !row["p_sign_flip"].is_empty()).count() > 27);
     let answers = std::fs::read_to_string(fixture.folder().join("answers.csv")).unwrap();
     assert!(answers.contains(",LL,") && answers.contains(",RR,"));
     let shown = std::fs::read_to_string(fixture.out().join("tables/answers.csv")).unwrap();

@@ -80,7 +80,7 @@ fn responses(text: &str, study: &Study, report: &mut Report) -> Result<Responses
     let (way, answers) = forms.unwrap_or_default();
     let codes: Vec<&str> = answers.iter().map(|of| of.code).collect();
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text.as_bytes());
-    let header = reader.headers().map(Clone::clone).unwrap_or_default();
+    let header = reader.headers().cloned().unwrap_or_default();
     let places: HashMap<String, usize> =
         header.iter().enumerate().map(|(place, name)| (name.trim().to_lowercase(), place)).collect();
     let missing: Vec<&str> = NEEDED.into_iter().filter(|name| !places.contains_key(*name)).collect();
