@@ -26,7 +26,7 @@ pub enum Choice {
     Ll,
     /// The right half is much better.
     Rr,
-    /// A step of a scale, or a place among several, from 1: of [`DIGITS`].
+    /// A step of a scale, or a place among several, from 1 to 9.
     Number(u8),
 }
 
