@@ -4,11 +4,14 @@
 //! or a process pair's hour down is in both. The means of these medians over pairs of processes have t intervals, since what chance
 //! gives a process stays with it and is in all of its rounds alike. Half of the 5 % that intervals may miss is the mean's over all
 //! configurations, the other half is shared by the configurations (Bonferroni).
+//!
+//! Where the times of all together differ, stages say where: how much of OLD's total each one adds. They have verdicts only then and only
+//! in that direction, so that they are wrong no more often than the total is.
 
 use super::brief::{change, listed};
 use super::series::{Verdict, middle};
 use isostudy_design::ConfigurationId;
-use isostudy_design::record::{AbPair, AbRun, BenchSample, Failure};
+use isostudy_design::record::{AbPair, AbRun, BenchSample, Failure, Stage};
 use isostudy_statistics::interval::Interval;
 use isostudy_table::digits::counted;
 use isostudy_table::{Cell, Columns, Table};
@@ -17,7 +20,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
 /// The version of [`AbComparison`] as JSON.
-pub const AB_SCHEMA: u32 = 1;
+pub const AB_SCHEMA: u32 = 2;
 /// The chance that any interval of a quantity misses.
 const MISSES: f64 = 0.05;
 
@@ -63,8 +66,23 @@ pub struct AbComparison {
     pub same_program: bool,
     /// Time first, and first of each quantity that of all configurations together.
     pub rows: Vec<AbRow>,
+    /// What each stage adds to the time of all configurations together, in the order of the stages.
+    pub stages: Vec<AbStage>,
     /// Configurations that were left out, and what was said of each.
     pub failed: Vec<Failure>,
+}
+
+/// What a stage adds to the time of all configurations together.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AbStage {
+    /// Which one.
+    pub stage: Stage,
+    /// NEW's time less OLD's, as a share of OLD's total: these add up to about the growth of the total.
+    pub change: f64,
+    /// Where it may lie, for all stages together.
+    pub interval: Option<Interval>,
+    /// What can be said of the stage; [`CannotSay`](Verdict::CannotSay) where the total has no verdict, or the other one.
+    pub verdict: Verdict,
 }
 
 /// One quantity of one configuration, or of all together.
@@ -88,11 +106,82 @@ pub struct AbRow {
 
 /// Compares the programs of a run.
 pub fn ab(run: &AbRun) -> AbComparison {
+    let rows: Vec<AbRow> = Quantity::ALL.into_iter().flat_map(|quantity| rows(run, quantity)).collect();
+    let total = rows.iter().find(|row| row.quantity == Quantity::Time && row.id.is_none());
     AbComparison {
         schema: AB_SCHEMA,
         same_program: run.old.sha256 == run.new.sha256,
-        rows: Quantity::ALL.into_iter().flat_map(|quantity| rows(run, quantity)).collect(),
+        stages: total.map_or_else(Vec::new, |total| stages(run, total.verdict)),
+        rows,
         failed: run.failed.clone(),
+    }
+}
+
+/// Of all configurations together, what each stage adds to the total.
+fn stages(run: &AbRun, of_total: Verdict) -> Vec<AbStage> {
+    let mut stages = Stage::parts_of(run.pairs.iter().flat_map(|pair| [&pair.old, &pair.new]));
+    stages.retain(|stage| *stage != Stage::Total);
+    let chance = MISSES / stages.len() as f64;
+    let of = |stage: Stage| {
+        let share = |pair: &AbPair| (stage.of(&pair.new) - stage.of(&pair.old)) / pair.old.total_s;
+        let (_, means) = by_processes(run, |pair| Some(share(pair)).filter(|share| share.is_finite()))?;
+        let Estimate { mean, half } = Estimate::of(&means, chance);
+        let verdict = match half {
+            Some(half) if mean - half > 0.0 && of_total == Verdict::Slower => Verdict::Slower,
+            Some(half) if mean + half < 0.0 && of_total == Verdict::Faster => Verdict::Faster,
+            _ => Verdict::CannotSay,
+        };
+        let interval = half.map(|half| Interval { low: mean - half, high: mean + half });
+        Some(AbStage { stage, change: mean, interval, verdict })
+    };
+    stages.into_iter().filter_map(of).collect()
+}
+
+/// By configuration and pair of processes, the median over rounds.
+type Medians<'a> = Vec<(&'a ConfigurationId, BTreeMap<u32, f64>)>;
+
+/// The median over rounds of what `of` says of each pair, by configuration and pair of processes; and the means of these over all
+/// configurations, of each pair of processes that has every one. `None` where it says nothing of some pair.
+fn by_processes(run: &AbRun, of: impl Fn(&AbPair) -> Option<f64>) -> Option<(Medians<'_>, Vec<f64>)> {
+    let mut found = BTreeMap::<&ConfigurationId, BTreeMap<u32, Vec<f64>>>::new();
+    for pair in &run.pairs {
+        found.entry(&pair.old.id).or_default().entry(pair.old.invocation).or_default().push(of(pair)?);
+    }
+    let medians: Medians<'_> = found
+        .iter()
+        .map(|(id, processes)| (*id, processes.iter().map(|(&at, found)| (at, middle(found))).collect()))
+        .collect();
+    // A pair of processes counts where it has every configuration, as each has.
+    let mut sums = BTreeMap::<u32, Vec<f64>>::new();
+    for (&at, &median) in medians.iter().flat_map(|(_, medians)| medians) {
+        sums.entry(at).or_default().push(median);
+    }
+    let means: Vec<f64> = sums
+        .values()
+        .filter(|found| found.len() == medians.len())
+        .map(|found| found.iter().sum::<f64>() / found.len() as f64)
+        .collect();
+    (!means.is_empty()).then_some((medians, means))
+}
+
+/// A mean, and half the width of its t interval; `None` of one value.
+struct Estimate {
+    mean: f64,
+    half: Option<f64>,
+}
+
+impl Estimate {
+    /// Of an interval that misses with a chance.
+    fn of(values: &[f64], chance: f64) -> Self {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let half = (values.len() > 1).then(|| {
+            let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
+            let quantile =
+                StudentsT::new(0.0, 1.0, n - 1.0).expect("degrees > 0").inverse_cdf(1.0 - chance / 2.0);
+            quantile * (variance / n).sqrt()
+        });
+        Self { mean, half }
     }
 }
 
@@ -102,48 +191,19 @@ fn rows(run: &AbRun, quantity: Quantity) -> Vec<AbRow> {
         let (old, new) = (quantity.of(&pair.old)?, quantity.of(&pair.new)?);
         (old > 0.0 && new > 0.0).then(|| (new / old).ln())
     };
-    let mut logs = BTreeMap::<&ConfigurationId, BTreeMap<u32, Vec<f64>>>::new();
-    for pair in &run.pairs {
-        let Some(log) = log(pair) else { return Vec::new() };
-        logs.entry(&pair.old.id).or_default().entry(pair.old.invocation).or_default().push(log);
-    }
-    let chance = MISSES / 2.0 / logs.len().max(1) as f64;
-    let medians: Vec<(&ConfigurationId, BTreeMap<u32, f64>)> = logs
-        .iter()
-        .map(|(id, processes)| (*id, processes.iter().map(|(&at, logs)| (at, middle(logs))).collect()))
-        .collect();
-    let pairs = |id: &ConfigurationId| logs[id].values().map(Vec::len).sum();
+    let Some((medians, means)) = by_processes(run, log) else { return Vec::new() };
+    let chance = MISSES / 2.0 / medians.len() as f64;
+    let pairs = |id: &ConfigurationId| run.pairs.iter().filter(|pair| pair.old.id == *id).count();
     let each = medians.iter().map(|(id, medians)| {
         let values: Vec<f64> = medians.values().copied().collect();
         row(quantity, Some((*id).clone()), pairs(id), &values, chance)
     });
-    // A pair of processes counts where it has every configuration, as each has.
-    let mut sums = BTreeMap::<u32, Vec<f64>>::new();
-    medians
-        .iter()
-        .flat_map(|(_, medians)| medians)
-        .for_each(|(&at, &log)| sums.entry(at).or_default().push(log));
-    let means: Vec<f64> = sums
-        .values()
-        .filter(|logs| logs.len() == medians.len())
-        .map(|logs| logs.iter().sum::<f64>() / logs.len() as f64)
-        .collect();
-    if means.is_empty() {
-        return Vec::new();
-    }
     let all = row(quantity, None, run.pairs.len(), &means, MISSES / 2.0);
     [all].into_iter().chain(each).collect()
 }
 
 fn row(quantity: Quantity, id: Option<ConfigurationId>, pairs: usize, logs: &[f64], chance: f64) -> AbRow {
-    let n = logs.len() as f64;
-    let mean = logs.iter().sum::<f64>() / n;
-    let half = (logs.len() > 1).then(|| {
-        let variance = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        let quantile =
-            StudentsT::new(0.0, 1.0, n - 1.0).expect("degrees > 0").inverse_cdf(1.0 - chance / 2.0);
-        quantile * (variance / n).sqrt()
-    });
+    let Estimate { mean, half } = Estimate::of(logs, chance);
     let verdict = match half {
         Some(half) if mean - half > 0.0 => Verdict::Slower,
         Some(half) if mean + half < 0.0 => Verdict::Faster,
@@ -204,6 +264,15 @@ impl AbComparison {
                 }
             }
         }
+        let of_stages: Vec<String> = self
+            .stages
+            .iter()
+            .filter(|of| of.verdict != Verdict::CannotSay)
+            .map(|of| format!("{} {}", of.stage.label(), change(1.0 + of.change)))
+            .collect();
+        if !of_stages.is_empty() {
+            lines.push(format!("Of that, in shares of OLD's total: {}.", listed(of_stages)));
+        }
         let tellable = self.of(Quantity::Time).filter(|row| row.id.is_some());
         let mut each: Vec<f64> = tellable.filter_map(|row| row.smallest_detectable).collect();
         each.sort_unstable_by(f64::total_cmp);
@@ -236,8 +305,23 @@ impl AbComparison {
             .column("verdict", "New is", |row| Cell::text(row.verdict.label()))
             .into_table("bench_ab", "New against old");
         let said = |failure: &Failure| format!("{} failed and is left out: {}", failure.id, failure.reason);
+        table.notes.extend(self.stages.iter().map(AbStage::in_words));
         table.notes.extend(self.failed.iter().map(said));
         table
+    }
+}
+
+impl AbStage {
+    fn in_words(&self) -> String {
+        let percent = |share: f64| format!("{:+.1} %", 100.0 * share);
+        let interval = self.interval.map_or_else(String::new, |interval| {
+            format!(" ({} to {})", percent(interval.low), percent(interval.high))
+        });
+        let verdict = match self.verdict {
+            Verdict::CannotSay => String::new(),
+            verdict => format!(": {}", verdict.label()),
+        };
+        format!("{} adds {}{interval} of OLD's total{verdict}", self.stage.label(), percent(self.change))
     }
 }
 
@@ -314,7 +398,8 @@ mod tests {
         let lines = found.brief(&made);
         assert!(lines.len() <= 10, "{lines:?}");
         assert_eq!(lines.last().unwrap(), "Failed and left out: as_bi, as_su, bs_bi, bs_su and 1 more.");
-        assert_eq!(found.table().notes[0], "as_bi failed and is left out: asked by OLD: no");
+        let notes = found.table().notes;
+        assert_eq!(notes[notes.len() - 5], "as_bi failed and is left out: asked by OLD: no");
     }
 
     /// By hand: medians of three processes are .01, .02 and .06, their mean .03, their standard deviation sqrt(.0007), and R's
@@ -338,6 +423,35 @@ mod tests {
             assert!((row.smallest_detectable.unwrap().ln() - half).abs() < 1e-9);
         }
         assert!(!found.would_tell(Quantity::Time, 0.05) && found.would_tell(Quantity::Time, 0.2));
+    }
+
+    /// Half of the normals' time more, which is a tenth of the total; and with it the geometry's a little less.
+    #[test]
+    fn the_stage_that_grew_is_named_and_no_other() {
+        let grown = |share: f64| {
+            let mut made =
+                run(&["ss_bi", "ss_su"], 6, 3, |_, at, round| 0.0005 * f64::from((at + round) % 3));
+            for pair in &mut made.pairs {
+                for (sample, more) in [(&mut pair.old, 0.0), (&mut pair.new, share)] {
+                    let total = sample.total_s;
+                    (sample.normals_s, sample.geometry_s) = (0.2 * total, 0.1 * total);
+                    sample.vertex_s = total - sample.normals_s - sample.geometry_s;
+                    sample.normals_s += more * total;
+                    sample.total_s += more * total;
+                }
+            }
+            ab(&made)
+        };
+        let found = grown(0.1);
+        assert_eq!(found.of(Quantity::Time).next().unwrap().verdict, Verdict::Slower);
+        let of = |stage| found.stages.iter().find(|of| of.stage == stage).unwrap();
+        assert!((of(Stage::Normals).change - 0.1).abs() < 0.002, "{:?}", found.stages);
+        assert_eq!(of(Stage::Normals).verdict, Verdict::Slower);
+        assert_eq!(of(Stage::Allocation).verdict, Verdict::CannotSay);
+        let sum: f64 = found.stages.iter().map(|of| of.change).sum();
+        assert!((sum - 0.1).abs() < 0.002, "{sum}");
+        let none = grown(0.0);
+        assert!(none.stages.iter().all(|of| of.verdict == Verdict::CannotSay || of.change.abs() < 0.002));
     }
 
     #[test]

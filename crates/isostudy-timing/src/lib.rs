@@ -51,7 +51,7 @@ pub mod fixture;
 #[cfg(test)]
 mod simulation;
 
-pub use ab::{AB_SCHEMA, AbComparison, AbRow, Quantity, ab};
+pub use ab::{AB_SCHEMA, AbComparison, AbRow, AbStage, Quantity, ab};
 pub use brief::brief;
 pub use compare::{COMPARISON_SCHEMA, Comparison, Limits, Row, compare, would_tell};
 pub use counted::InstructionRow;
