@@ -554,3 +554,56 @@ fn a_configuration_is_inspected() {
     let large = inspect("ss_bi", &["--resolution", "1024"]);
     assert!(large.code == Some(2) && large.stderr.contains("body-centred"), "{}", large.stderr);
 }
+
+const BLOBS: &str = "\
+methods = [\"mc\", \"nets\"]
+cells = 12
+rounds = 3
+aa_rounds = 2
+
+[objects.ball]
+field = { kind = \"sphere\", radius = 1.0 }
+
+[objects.waves]
+field = { kind = \"formula\", text = \"sin(3*x)*sin(3*y) - 2*z\" }
+min = [-1, -1, -0.5]
+max = [1, 1, 0.5]
+";
+
+/// Times are measured and not judged: what was asked for is there, and how long it takes is said first.
+#[test]
+fn methods_and_fields_are_a_benchmark_without_a_study() {
+    let folder = command::Folder::of("bench");
+    folder.write("blobs.toml", BLOBS);
+    let run = folder.run(&["blobs.toml", "--out", "out"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let said = run.stderr.find("timings: about ").expect("how long it takes");
+    assert!(run.stderr[said..].contains("4 configurations"), "{}", run.stderr);
+    let measured: Value = serde_json::from_str(&folder.read("out/bench/full/run.json")).unwrap();
+    let ids: Vec<&str> =
+        measured["workloads"].as_array().unwrap().iter().map(|of| of["id"].as_str().unwrap()).collect();
+    assert_eq!(ids, ["ball_mc", "ball_nets", "waves_mc", "waves_nets"]);
+    assert_eq!(measured["samples"].as_array().unwrap().len(), 3 * 4);
+}
+
+#[test]
+fn all_faults_of_a_benchmark_file_are_named_at_once() {
+    let folder = command::Folder::of("bench");
+    let broken = BLOBS
+        .replace("\"nets\"", "\"nest\"")
+        .replace("radius = 1.0", "radius = 0.0")
+        .replace("2*z", "2*w")
+        .replace("rounds = 3", "rounds = 0");
+    folder.write("blobs.toml", broken);
+    let run = folder.run(&["blobs.toml", "--out", "out"]);
+    assert_eq!(run.code, Some(2), "{}", run.stderr);
+    for part in [
+        "4 faults",
+        "line 3: rounds",
+        "did you mean nets?",
+        "objects.ball.field",
+        "line 10: objects.waves.field",
+    ] {
+        assert!(run.stderr.contains(part), "{part}: {}", run.stderr);
+    }
+}

@@ -15,7 +15,7 @@ use std::io;
 use std::time::{Duration, Instant};
 
 /// Rounds of a pair of processes, however long they take: a median needs some.
-const LEAST_ROUNDS: u32 = 3;
+pub const LEAST_ROUNDS: u32 = 3;
 
 /// What is run, apart from the configurations.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -56,7 +56,7 @@ mod run;
 mod stages;
 mod worker;
 
-pub use ab::{AbEntry, AbMeasured, AbPlan, read_ab_journal, run_ab};
+pub use ab::{AbEntry, AbMeasured, AbPlan, LEAST_ROUNDS, read_ab_journal, run_ab};
 pub use allocations::{AllocationCounts, Asked, count_allocations};
 pub use csv_files::{machine_csv, samples_csv};
 pub use error::BenchError;

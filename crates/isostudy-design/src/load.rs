@@ -49,6 +49,14 @@ impl Study {
         Self::checked(text, Path::new("study.toml"), Some(target)).map_err(|error| error.placed(text))
     }
 
+    /// As [`Study::parse`], for a CPU that is given, whatever the text says.
+    ///
+    /// # Errors
+    /// As for [`Study::load`].
+    pub fn for_cpu(text: &str, path: &Path, target: CpuProfile) -> Result<Self, ConfigError> {
+        Self::checked(text, path, Some(target)).map_err(|error| error.placed(text))
+    }
+
     fn checked(text: &str, path: &Path, target: Option<CpuProfile>) -> Result<Self, ConfigError> {
         let file: StudyFile = parse_toml(text, path)?;
         let checker = Checker { file: path };

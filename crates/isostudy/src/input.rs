@@ -1,5 +1,7 @@
 //! Files that are named to be read, each through `isostudy_foreign`, up to a limit.
 
+mod benchmark_file;
+
 use crate::recipe::{finish, recipe};
 use anyhow::{Context, Result, bail};
 use isostudy_design::Study;
@@ -53,12 +55,26 @@ pub(crate) fn text(path: &Path) -> Result<String> {
     String::from_utf8(bytes).with_context(|| path.display().to_string())
 }
 
-/// A study, and what it names.
+/// A study, and what it names; or that of a [benchmark file](benchmark_file).
 ///
 /// # Errors
 /// If it is no file, or something in it is wrong.
 pub(crate) fn study(path: &Path) -> Result<Study> {
+    study_with(path, &|_| Ok(()))
+}
+
+/// The same. Of a benchmark file, what `more` finds wrong is said together with all else.
+///
+/// # Errors
+/// The same.
+pub(crate) fn study_with(path: &Path, more: &dyn Fn(&Study) -> Result<()>) -> Result<Study> {
     check_study(path)?;
+    // What cannot be read as a text its reader says.
+    if let Ok(text) = text(path)
+        && let Some(study) = benchmark_file::study(path, &text, more)?
+    {
+        return Ok(study);
+    }
     let study = Study::load(path)?;
     for method in &study.methods {
         recipe(&study, method.id, Purpose::Benchmark)?;

@@ -17,6 +17,7 @@ mod accuracies;
 mod budgets;
 mod bundle;
 mod cases;
+mod expected;
 mod formats;
 mod jobs;
 mod measurements;

@@ -10,9 +10,12 @@ use std::path::Path;
 /// # Errors
 /// If something in it is wrong, or not there.
 pub(super) fn load(path: &Path) -> Result<Study> {
-    let study = input::study(path)?;
-    recipe::check(&study)?;
     let machine_bytes = isostudy_bench::read_machine().memory_bytes;
+    let study = input::study_with(path, &|study| {
+        prepare::check(study, machine_bytes)?;
+        fields::check(study)
+    })?;
+    recipe::check(&study)?;
     prepare::check(&study, machine_bytes)?;
     prepare::check_cases(&study, machine_bytes)?;
     fields::check(&study)?;

@@ -1,14 +1,14 @@
 //! Two builds of this program, timed in turn.
 
-use super::Pipeline;
 use super::formats::write_table;
 use super::worker::is_program;
+use super::{Pipeline, expected};
 use crate::store::{Inputs, remove_if_there, sha256, write_whole};
 use crate::terminal::progress::Step;
 use crate::terminal::tell_once;
 use crate::{input, machine};
 use anyhow::{Context, Result};
-use isostudy_bench::{AbEntry, AbPlan, Allowance, BenchError, ProcessExecutor, run_ab};
+use isostudy_bench::{AbEntry, AbPlan, Allowance, BenchError, LEAST_ROUNDS, ProcessExecutor, run_ab};
 use isostudy_design::ConfigurationId;
 use isostudy_design::record::{AbProgram, AbRun, Purpose};
 use std::fs::File;
@@ -70,6 +70,16 @@ impl Pipeline<'_> {
         let step = Step::begin("bench ab", plan.processes as usize, 0);
         let stamp = self.stage(STAGE, inputs(), |writer| {
             let done = self.take_up_ab(&journal, &key)?;
+            // Each pair of processes has its least number of rounds, however long they take.
+            let cost = self.round_cost(&configurations)?;
+            let least = f64::from(plan.processes * (plan.warmup + LEAST_ROUNDS)) * 2.0 * cost.seconds;
+            tell!(
+                "bench ab: {}, {} by both in {} pairs of processes{}",
+                expected::about(least.max(plan.seconds)),
+                expected::configurations_in_words(configurations.len()),
+                plan.processes,
+                expected::beside(cost.untried)
+            );
             let begun = AbEntry::Begun { key: key.clone() };
             let lines: String = [&begun].into_iter().chain(&done).map(AbEntry::line).collect();
             write_whole(&journal, lines.as_bytes())?;

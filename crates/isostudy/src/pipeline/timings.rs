@@ -71,6 +71,7 @@ impl Pipeline<'_> {
                 let told = isostudy_timing::would_tell(run);
                 plan.until.is_some_and(|share| told.is_some_and(|(_, most)| most <= 1.0 + share))
             };
+            self.say_expected(&plan, &measurement.configurations)?;
             let run = self.run(&measurement, machine, &journal, &key, &step, &enough)?;
             let folder = &name;
             writer.write_json(&format!("{folder}/run.json"), &run)?;
