@@ -161,10 +161,8 @@ fn root() -> PathBuf {
 fn with_example(section: &Section) -> Table {
     let text = std::fs::read_to_string(root().join("crates/isostudy/src/commands/new/study.toml")).unwrap();
     let mut study: Table = text.parse().unwrap();
-    // Not every example has the names of the levels that it is made of. A stopping rule needs one.
-    if section.table != "analysis.stopping" {
-        study["analysis"].as_table_mut().unwrap().remove("primary");
-    }
+    // Not every example has the names of the levels that it is made of.
+    study["analysis"].as_table_mut().unwrap().remove("primary");
     let example: Table = section.examples.first().expect("an example").parse().unwrap();
     if section.table == "cpu" {
         return example;
