@@ -139,8 +139,8 @@ fn of_sets_the_planted_worths_come_out_also_of_a_group_that_is_a_part() {
         let worths = found[0].worths.as_ref().unwrap();
         for (item, worth) in items.iter().zip(worths).skip(1) {
             let truth = WORTHS.iter().find(|(id, _)| id == item).unwrap().1;
-            let interval = worth.interval.unwrap();
-            assert!((interval.low..=interval.high).contains(&truth), "{item}: {worth:?}");
+            // Five intervals of 95 % would hold their truths in 77 of 100 such tests; five of 3.5 standard errors in 998 of 1,000.
+            assert!((worth.value - truth).abs() < 3.5 * worth.error.unwrap(), "{item}: {worth:?}");
         }
         assert_eq!(found[0].answers == 600, items.len() == 4);
     }
