@@ -367,6 +367,12 @@ fn a_declared_rule_stops_a_study_at_a_look_and_the_report_judges_by_it() {
     let all = says(&folder, &server, 9, Some("_bi"));
     assert!(all[..7].iter().all(|says| *says == json!([0, "wait"])), "{all:?}");
     assert!(all[7..].iter().all(|says| *says == json!([1, "stop"])), "{all:?}");
+    // Four more begin and do not finish: they reach no further look, and say nothing of the methods.
+    for _ in 0..4 {
+        let session = crate::server::begin(server.address);
+        assert_eq!(post(server.address, "/api/answers", &answer(&session, 0, "NP")).unwrap().0, 200);
+    }
+    assert_eq!(summary(server.address)["stopping"]["look"], 1);
     fs::write(folder.path("answers.csv"), get(server.address, "/api/admin/answers.csv", TOKEN).unwrap().1)
         .unwrap();
     drop(server);

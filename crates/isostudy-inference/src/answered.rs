@@ -2,13 +2,14 @@
 
 use crate::ballots::{BallotGroup, ballot_groups, ballots, declared};
 use crate::hypotheses::{self, Hypothesis};
+use crate::looks;
 use crate::recorded::Recorded;
 use crate::tally::Tally;
 use isostudy_design::Study;
 use isostudy_design::config::Exclusion;
 use isostudy_design::contrast::contrasts;
 use isostudy_responses::{Answer, Responses};
-use isostudy_statistics::{DeclaredBallot, Flag, ShownBallot, screening_with};
+use isostudy_statistics::{DeclaredBallot, Flag, Look, ShownBallot, screening_with};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
@@ -27,6 +28,8 @@ pub struct Answered {
     pub declared: Vec<DeclaredBallot>,
     /// The items that are compared with one another, and the answers about them.
     pub groups: Vec<BallotGroup>,
+    /// The look that the answers have reached, where the study may stop by one.
+    pub look: Option<Look>,
     /// Every contrast, then every question.
     pub hypotheses: Vec<Hypothesis>,
 }
@@ -69,10 +72,15 @@ impl Answered {
             },
         );
         let declared = declared(study, &shown);
-        let hypotheses = hypotheses::of_study(study, &declared);
+        // Whoever is left out has finished, too.
+        let look = match excluded.is_empty() {
+            true => looks::reached(study, &shown),
+            false => looks::reached(study, &ballots(study, &responses)),
+        };
+        let hypotheses = hypotheses::of_study(study, &declared, look.as_ref());
         check(study, &tally, &hypotheses);
         drop(counting);
-        Some(Self { responses, excluded, tally, shown, declared, groups, hypotheses })
+        Some(Self { responses, excluded, tally, shown, declared, groups, look, hypotheses })
     }
 }
 

@@ -4,12 +4,12 @@ use crate::ballots::BallotGroup;
 use crate::omnibus::{self, Omnibus};
 use isostudy_design::Level;
 use isostudy_design::Study;
-use isostudy_design::config::{AnalysisSection, StoppingBoundary, StoppingSection};
+use isostudy_design::config::AnalysisSection;
 use isostudy_design::contrast::{Contrast, Over, PRIMARY, contrasts, families};
 use isostudy_statistics::bootstrap::Resampling;
 use isostudy_statistics::interval::Interval;
 use isostudy_statistics::sign_test;
-use isostudy_statistics::{Boundary, DeclaredBallot, Look, MARGIN, ScoreTest, benjamini_hochberg, holm};
+use isostudy_statistics::{DeclaredBallot, Look, MARGIN, ScoreTest, benjamini_hochberg, holm};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -318,19 +318,18 @@ impl Robustness {
 }
 
 /// Every contrast of a study, then every question. `ballots` are by question, as the study declares them.
-pub fn of_study(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis> {
-    let mut all = of_contrasts(study, ballots);
+pub fn of_study(study: &Study, ballots: &[DeclaredBallot], look: Option<&Look>) -> Vec<Hypothesis> {
+    let mut all = of_contrasts(study, ballots, look);
     all.extend(of_questions(study, ballots));
     all
 }
 
-/// Every contrast of a study. `ballots` are by question, as the study declares them.
-pub fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis> {
+/// Every contrast of a study. `ballots` are by question, as the study declares them; of fewer people, too, the look is that of all
+/// answers.
+pub fn of_contrasts(study: &Study, ballots: &[DeclaredBallot], look: Option<&Look>) -> Vec<Hypothesis> {
     let rules = Rules::of(&study.file.analysis);
     let contrasts = contrasts(study);
     let families = families(&contrasts, &study.file.analysis);
-    let people: BTreeSet<usize> = ballots.iter().map(DeclaredBallot::participant).collect();
-    let look = study.file.analysis.stopping.as_ref().map(|rule| look(rule, people.len()));
     let of_contrast = |contrast: &Contrast| {
         let target = Target::Contrast { levels: contrast.levels, over: contrast.over };
         Hypothesis::new(contrast.name.clone(), &contrast.scope, target, test(study, contrast, ballots), rules)
@@ -352,7 +351,7 @@ pub fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis
             .map(|(_, hypothesis)| hypothesis)
             .collect();
         if family.name == PRIMARY {
-            members.iter_mut().for_each(|of| of.look.clone_from(&look));
+            members.iter_mut().for_each(|of| of.look = look.cloned());
         }
         adjust(&mut members, Adjustment::Holm);
     }
@@ -361,15 +360,6 @@ pub fn of_contrasts(study: &Study, ballots: &[DeclaredBallot]) -> Vec<Hypothesis
     adjust_over_all(&mut all);
     mark_by_object(study, ballots, &mut all);
     all
-}
-
-/// The look of a stopping rule that so many people have reached.
-pub fn look(rule: &StoppingSection, people: usize) -> Look {
-    let boundary = match rule.boundary {
-        StoppingBoundary::OBrienFleming => Boundary::OBrienFleming,
-        StoppingBoundary::Pocock => Boundary::Pocock,
-    };
-    Look::of(boundary, &rule.looks, people)
 }
 
 /// Marks what compares two levels on all objects where their preference was shown to depend on the object.

@@ -96,7 +96,7 @@ mod tests {
         for person in 0..18 {
             let kept: Vec<_> =
                 answered.declared.iter().filter(|b| b.participant() != person).copied().collect();
-            for (i, of) in hypotheses::of_contrasts(&study, &kept).iter().enumerate() {
+            for (i, of) in hypotheses::of_contrasts(&study, &kept, None).iter().enumerate() {
                 assert!(of.is_about_the_same(all[i]));
                 largest[i] = largest[i].max(of.adjusted);
                 if of.adjusted > 0.05 {

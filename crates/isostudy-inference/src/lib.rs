@@ -25,6 +25,7 @@ pub mod hypotheses;
 pub mod inputs;
 pub mod leave_one_out;
 pub mod liking;
+pub mod looks;
 pub mod majorities;
 pub mod many;
 pub mod mesh_set;

@@ -37,7 +37,8 @@ impl Majorities {
         let again = match study {
             Some(study) => {
                 let kept = declared.iter().filter(|b| keep(b.participant()));
-                hypotheses::of_study(study, &kept.copied().collect::<Vec<_>>())
+                let look = tested.iter().find_map(|of| of.look.as_ref());
+                hypotheses::of_study(study, &kept.copied().collect::<Vec<_>>(), look)
             }
             None => {
                 let some = |group: &BallotGroup| BallotGroup {

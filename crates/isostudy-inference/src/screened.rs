@@ -86,11 +86,11 @@ pub fn of_study(study: &Study, answers: &Answered, respondents: &[Respondent]) -
     };
     screened(
         respondents,
-        || hypotheses::of_contrasts(study, &everyone),
+        || hypotheses::of_contrasts(study, &everyone, answers.look.as_ref()),
         |keep| {
             let kept: Vec<DeclaredBallot> =
                 everyone.iter().filter(|b| keep(b.participant())).copied().collect();
-            hypotheses::of_contrasts(study, &kept)
+            hypotheses::of_contrasts(study, &kept, answers.look.as_ref())
         },
     )
 }

@@ -7,7 +7,7 @@ use isostudy_statistics::sign_test;
 
 fn tested(name: &str, scope: &str) -> ScoreTest {
     let study = fixture::study();
-    let all = of_contrasts(&study, &fixture::answered(&study).declared);
+    let all = of_contrasts(&study, &fixture::answered(&study).declared, None);
     let found: Vec<_> = all.into_iter().filter(|h| h.contrast == name && h.scope == scope).collect();
     assert_eq!(found.len(), 1, "{name} {scope}");
     found[0].test.clone()
@@ -71,7 +71,7 @@ fn mean_score_with_its_interval() {
 #[test]
 fn holm_over_the_nine_group_contrasts() {
     let study = fixture::study();
-    let all = of_contrasts(&study, &fixture::answered(&study).declared);
+    let all = of_contrasts(&study, &fixture::answered(&study).declared, None);
     let own: Vec<&Hypothesis> = all.iter().filter(|h| h.family == "groups").collect();
     let names: Vec<String> = own.iter().map(|h| format!("{} {}", h.contrast, h.scope)).collect();
     let adjusted: Vec<f64> = own.iter().map(|h| h.adjusted).collect();
@@ -103,7 +103,7 @@ fn leave_one_out_range() {
 fn corrections_over_all_tests_leave_eleven_of_fourteen() {
     // The 25 contrasts of the paper's own families, Holm over all of them, computed apart: these three are lost.
     let study = fixture::study();
-    let all = of_contrasts(&study, &fixture::answered(&study).declared);
+    let all = of_contrasts(&study, &fixture::answered(&study).declared, None);
     assert!(all.iter().all(|h| h.adjusted_over_all.unwrap() >= h.adjusted));
     let of = |name: &str, scope: &str| {
         all.iter().find(|h| h.contrast == name && h.scope == scope).unwrap().adjusted_over_all.unwrap()
@@ -120,7 +120,7 @@ fn what_a_study_declares_decides() {
         format!("[analysis]{}", &rest[..end])
     });
     let study = fixture::study_with(&[(&own.expect("the paper's study has the section"), rules)]);
-    let all = of_contrasts(&study, &fixture::answered(&study).declared);
+    let all = of_contrasts(&study, &fixture::answered(&study).declared, None);
     assert_eq!((all[0].family.as_str(), all[0].contrast.as_str(), all[0].family_size), ("primary", "B-S", 1));
     // Alone in its family: p as it is.
     prints(all[0].adjusted, "0.00940");
