@@ -330,7 +330,7 @@ fn power_and_analysis_test_the_same() {
             let tests = counts.iter().map(|of| (!of.is_empty()).then(|| sign_flip_of_counts(of).p()));
             let p: Vec<Option<f64>> = tests.collect();
             let adjusted = setting.adjusted(&p);
-            let analysed = hypotheses::of_study(&study, &ballots);
+            let analysed = hypotheses::of_study(&study, &ballots, None);
             let told = setting.targets.iter().filter(|target| target.told).count();
             let plain = analysed.iter().filter(|of| !of.scope.contains(" - "));
             assert_eq!(told, plain.count(), "{max_questions} {rule:?}");

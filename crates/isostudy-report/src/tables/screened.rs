@@ -72,7 +72,7 @@ mod tests {
         assert!((0.0062..0.0189).contains(&p), "{p}");
         let kept: Vec<DeclaredBallot> =
             answered.declared.iter().filter(|b| b.participant() != 15).copied().collect();
-        let alone = hypotheses::of_study(&study, &kept);
+        let alone = hypotheses::of_study(&study, &kept, None);
         let same = alone.iter().find(|h| h.contrast == "B-S" && h.scope == "all").unwrap();
         assert_eq!(p, same.test.sign_flip.p());
         let recorded = Recorded::of_study(&study, &answered.responses, &answered.shown);

@@ -69,7 +69,7 @@ fn who_stops_early_tells_nothing_about_differences() {
     let stops = |b: &&DeclaredBallot| b.participant() < 9 || study.comparisons[b.question()].object != last;
     let kept: Vec<DeclaredBallot> = answered.declared.iter().filter(stops).copied().collect();
     let tested = |contrast: &str, scope: &str| {
-        let all = hypotheses::of_contrasts(&study, &kept).into_iter();
+        let all = hypotheses::of_contrasts(&study, &kept, None).into_iter();
         all.filter(|h| h.contrast == contrast && h.scope == scope).map(|h| h.test).next().unwrap()
     };
     // Everybody counts overall and between lattices, each with the objects of their own; on the bunny those who saw it.
