@@ -13,7 +13,8 @@ mkdir -p "$work"
 version=0.29.4
 PATH=$target/tools/bin:$PATH
 if [ "$(cbindgen --version 2>/dev/null)" != "cbindgen $version" ]; then
-  cargo install --quiet cbindgen --version "$version" --locked --root "$target/tools" ||
+  # It reads a few files: what the optimiser would take is longer.
+  CARGO_PROFILE_RELEASE_OPT_LEVEL=0 cargo install --quiet cbindgen --version "$version" --locked --root "$target/tools" ||
     echo "CBINDGEN $version COULD NOT BE INSTALLED: the header was not compared" >&2
 fi
 if command -v cbindgen >/dev/null; then
