@@ -63,10 +63,29 @@ fn a_forged_command_shows_what_runs() {
     assert_shows_nothing_forged(&ran.stderr);
 }
 
-#[test]
-fn names_cannot_forge_a_line_or_a_page() {
+/// The study that `isostudy new` makes, of coarse meshes and small animations.
+fn new_study() -> Folder {
     let folder = Folder::new();
     folder.succeed(&["new", "my"]);
+    let small = |line: &str| {
+        let value = match line.split_once(" = ").map(|(key, _)| key) {
+            Some("benchmark_spacing" | "stimulus_spacing") => "0.25",
+            Some("width" | "height") => "64",
+            Some("frames") => "8",
+            Some("duration_s") => "0.64",
+            _ => return format!("{line}\n"),
+        };
+        let (key, _) = line.split_once(" = ").unwrap();
+        format!("{key} = {value}\n")
+    };
+    let text: String = folder.read("my/study.toml").lines().map(small).collect();
+    folder.write("my/study.toml", text);
+    folder
+}
+
+#[test]
+fn names_cannot_forge_a_line_or_a_page() {
+    let folder = new_study();
     let text = folder.read("my/study.toml");
     let (before, objects) = text.split_once("[[objects]]").expect("a study has objects");
     let name = objects.lines().find(|line| line.starts_with("name = ")).expect("an object has a name");
@@ -330,8 +349,7 @@ fn what_a_program_started_in_a_session_of_its_own_ends_with_the_command() {
 
 #[test]
 fn binaries_that_keep_to_no_limit_end_a_comparison_by_name() {
-    let folder = Folder::new();
-    folder.succeed(&["new", "my"]);
+    let folder = new_study();
     let this = env!("CARGO_BIN_EXE_isostudy");
     for (name, script, words) in [
         ("hangs", "sleep 1000", "took longer than 1 s to answer"),

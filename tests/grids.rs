@@ -50,8 +50,8 @@ field = { kind = "grid", file = "few_51_0_vtu.vtk", array = "a value" }
 isovalue = 0.105
 min = [-1.0, -1.0, -1.0]
 max = [1.0, 1.0, 1.0]
-benchmark_spacing = 0.1
-stimulus_spacing = 0.1
+benchmark_spacing = 0.25
+stimulus_spacing = 0.25
 camera = { distance = 2.0, vertical_fov_rad = 0.6 }
 [turntable]
 width = 64
