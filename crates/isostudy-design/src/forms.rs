@@ -50,7 +50,7 @@ mod stimuli;
 
 pub(crate) use about::texts as about_texts;
 pub use about::{AboutEntry, Answers, COMMENT};
-pub use file::{FormEntry, FormFile, KeyEntry, Quotas, Stimulus};
+pub use file::{ANY_FORM, FormEntry, FormFile, KeyEntry, Quotas, Stimulus};
 pub(crate) use several::{count as several, fewest};
 pub use spoken::Language;
 

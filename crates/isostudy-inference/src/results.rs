@@ -50,6 +50,11 @@ pub struct Results<'a> {
     pub conclusions: Conclusions,
 }
 
+/// Whether a server chose questions by what was answered before.
+fn is_adaptive(study: &Study) -> bool {
+    study.file.forms.as_ref().is_some_and(|forms| forms.adaptive)
+}
+
 impl<'a> Results<'a> {
     /// Computes everything once.
     pub fn of(inputs: &Inputs<'a>) -> Self {
@@ -326,6 +331,7 @@ impl<'a> Base<'a> {
             scales,
             ways: match study.filter(|_| !responses.judged.is_empty()) {
                 Some(study) => ways::of_judged(study, responses, leaves_out, groups),
+                None if study.is_some_and(is_adaptive) => ways::of_adaptive(groups),
                 None => ways::of_steps(groups),
             },
             agreement,

@@ -5,7 +5,8 @@ use isostudy_design::Study;
 use isostudy_responses::{Judged, Responses, Verdict};
 use isostudy_statistics::interval::Interval;
 use isostudy_statistics::{
-    Choice, Coefficient, FitError, GradedBallot, Link, Rating, first_choice, graded, ratings,
+    Choice, Coefficient, FitError, GradedBallot, Link, Participants, Rating, first_choice, graded, ratings,
+    shrunken,
 };
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,6 +22,8 @@ pub enum WayModel {
     Ratings,
     /// What was taken of several: on the scale of pairs.
     FirstChoice,
+    /// Pairs of which earlier answers chose some: worths drawn from one distribution, on the scale of pairs.
+    DrawnTogether,
 }
 
 impl WayModel {
@@ -35,6 +38,7 @@ impl WayModel {
             Self::Cumulative => "cumulative-steps",
             Self::Ratings => "ratings",
             Self::FirstChoice => "first-choice",
+            Self::DrawnTogether => "drawn-together",
         }
     }
 }
@@ -94,6 +98,23 @@ fn steps(group: &BallotGroup, (model, link): (WayModel, Link)) -> OfGroup<'_> {
         much: ballots.iter().filter(|of| of.step.abs() > 1).count() as u64,
         worths: fitted.map(|fit| worths(&fit.log_worths, |item| fit.difference(item, 0))),
     }
+}
+
+/// Worths drawn together, of every group: right also where earlier answers decided which pairs were asked.
+pub fn of_adaptive(groups: &[BallotGroup]) -> Vec<OfGroup<'_>> {
+    let one = |group| {
+        let group: &BallotGroup = group;
+        let participants = Participants::of(group.items.len(), &group.ballots);
+        let worths = shrunken(&participants).map(|of| worths(&of.log_worths, |item| of.difference(item, 0)));
+        OfGroup {
+            group,
+            model: WayModel::DrawnTogether,
+            answers: group.ballots.len() as u64,
+            much: 0,
+            worths,
+        }
+    };
+    groups.par_iter().map(one).collect()
 }
 
 /// Each item's value less the first one's, with what is known of the difference.

@@ -3,7 +3,7 @@
 use crate::record::Answer;
 use crate::screen;
 use isostudy_design::config::Way;
-use isostudy_design::forms::KeyEntry;
+use isostudy_design::forms::{ANY_FORM, KeyEntry};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -53,11 +53,11 @@ pub struct OtherStudy {
 /// # Errors
 /// The first answer to something that the key does not know.
 pub fn lines<'a>(given: &'a [Given], key: &'a [KeyEntry]) -> Result<Vec<Line<'a>>, OtherStudy> {
-    let shown: HashMap<(usize, usize), &KeyEntry> = key.iter().map(|k| ((k.form, k.order), k)).collect();
+    let known = Key::of(key);
     let line = |given: &'a Given| {
         let Given { participant, form, answer } = given;
-        let entry = shown.get(&(*form, answer.order as usize));
-        match entry.filter(|entry| entry.stimulus == answer.stimulus) {
+        let entry = known.at(*form, answer.order);
+        match known.entry(*form, answer.order, &answer.stimulus) {
             None => Err(OtherStudy {
                 participant: participant.clone(),
                 form: *form,
@@ -85,6 +85,35 @@ pub fn lines<'a>(given: &'a [Given], key: &'a [KeyEntry]) -> Result<Vec<Line<'a>
         }
     };
     given.iter().map(line).collect()
+}
+
+/// The key, to look things up in.
+pub(crate) struct Key<'a> {
+    places: HashMap<(usize, usize), &'a KeyEntry>,
+    /// What may be shown in any form, by code name.
+    anywhere: HashMap<&'a str, &'a KeyEntry>,
+}
+
+impl<'a> Key<'a> {
+    pub(crate) fn of(key: &'a [KeyEntry]) -> Self {
+        let (anywhere, placed): (Vec<&KeyEntry>, Vec<&KeyEntry>) =
+            key.iter().partition(|entry| entry.form == ANY_FORM);
+        Self {
+            places: placed.into_iter().map(|entry| ((entry.form, entry.order), entry)).collect(),
+            anywhere: anywhere.into_iter().map(|entry| (entry.stimulus.as_str(), entry)).collect(),
+        }
+    }
+
+    /// What a form plans for a place.
+    fn at(&self, form: usize, order: u32) -> Option<&'a KeyEntry> {
+        self.places.get(&(form, order as usize)).copied()
+    }
+
+    /// What the stimulus of an answer shows; `None` if the study shows it to nobody there.
+    pub(crate) fn entry(&self, form: usize, order: u32, stimulus: &str) -> Option<&'a KeyEntry> {
+        let planned = self.at(form, order).filter(|entry| entry.stimulus == stimulus);
+        planned.or_else(|| self.anywhere.get(stimulus).copied())
+    }
 }
 
 /// Lines as CSV with a header, `\n` at the ends, and no formula to a spreadsheet: names come from files that a participant has had

@@ -67,6 +67,23 @@ pub enum Loss {
     Accept,
 }
 
+/// What somebody was asked, with what this person has answered so far, in the same order.
+pub type Asked<'a> = (&'a FormEntry, &'a [Choice]);
+
+/// Chooses what somebody is asked: of everybody who has answered something, of the form that is planned, and of how many have begun
+/// before. Practice stays as it is planned, and so does the number of questions.
+#[derive(Clone)]
+pub struct Chooser(pub Arc<Choose>);
+
+/// What a [`Chooser`] does.
+pub type Choose = dyn Fn(&[Asked<'_>], &FormEntry, usize) -> FormEntry + Send + Sync;
+
+impl std::fmt::Debug for Chooser {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Chooser")
+    }
+}
+
 /// What a participant is dealt.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Dealt {
@@ -84,6 +101,8 @@ struct Person {
     number: i64,
     name: String,
     form: usize,
+    /// What was chosen for this person, in the place of what the form plans.
+    chosen: Option<FormEntry>,
     choices: Vec<Choice>,
     last_ms: i64,
     finished: bool,
@@ -108,6 +127,8 @@ pub struct Journal {
     by_token: HashMap<String, usize>,
     by_identifiers: HashMap<Identifiers, usize>,
     waiting: Waiting,
+    /// What chooses questions, in a study that asks each person where an answer tells most.
+    chooser: Option<Chooser>,
     held: Held,
     uncounted: bool,
     /// Whether the files may hold what was deleted.
@@ -208,6 +229,7 @@ impl Journal {
             by_token: HashMap::new(),
             by_identifiers: HashMap::new(),
             waiting: Waiting::default(),
+            chooser: None,
             held: Held::default(),
             uncounted: false,
             remnants: false,
@@ -240,6 +262,25 @@ impl Journal {
     /// Takes no more people than this from now on.
     pub fn limit(&mut self, quotas: Quotas) {
         self.quotas = quotas;
+    }
+
+    /// Chooses questions of newcomers by this from now on.
+    pub fn choose_by(&mut self, chooser: Chooser) {
+        self.chooser = Some(chooser);
+    }
+
+    /// What somebody is asked.
+    fn entry<'a>(&'a self, form: usize, chosen: &'a Option<FormEntry>) -> &'a FormEntry {
+        chosen.as_ref().unwrap_or(&self.forms[form - 1])
+    }
+
+    /// What is chosen for somebody new, before the first answer.
+    fn chosen(&self, form: usize) -> Option<FormEntry> {
+        let chooser = self.chooser.as_ref()?;
+        let others: Vec<Asked<'_>> =
+            self.people.iter().map(|of| (self.entry(of.form, &of.chosen), &of.choices[..])).collect();
+        let before = self.people.len() + self.waiting.iter().count();
+        Some((chooser.0)(&others, &self.forms[form - 1], before))
     }
 
     /// Writes down how much there will be, where that is less than there was: before it is deleted, so that a machine that stops in
@@ -312,10 +353,12 @@ impl Journal {
             return Err(Refusal::Full);
         }
         let free: Vec<usize> = (1..=load.len()).filter(|form| load[form - 1] == least).collect();
+        let form = free[self.random_index(free.len())];
         let newcomer = Newcomer {
             name: hex(&*self.machine, 8),
             token: hex(&*self.machine, 16),
-            form: free[self.random_index(free.len())],
+            form,
+            chosen: self.chosen(form),
             identifiers: given,
             language: language.filter(|lang| self.languages.contains(lang)),
             about: About::new(),
@@ -354,15 +397,15 @@ impl Journal {
     }
 
     fn welcome(&self, newcomer: &Newcomer) -> Dealt {
-        let Newcomer { name, token, form, .. } = newcomer;
-        let form = self.forms[form - 1].clone();
+        let Newcomer { name, token, form, chosen, .. } = newcomer;
+        let form = self.entry(*form, chosen).clone();
         Dealt { participant: name.clone(), token: token.clone(), form, answered: 0 }
     }
 
     /// Writes down somebody who waits: a first answer has come.
     fn write_down(&mut self, token: &str) -> rusqlite::Result<()> {
         let Some(newcomer) = self.waiting.take(token).cloned() else { return Ok(()) };
-        let Newcomer { name, token, form, identifiers, language, about, since_ms } = &newcomer;
+        let Newcomer { name, token, form, chosen, identifiers, language, about, since_ms } = &newcomer;
         if !identifiers.is_empty() || !about.is_empty() {
             self.change_identities()?;
         }
@@ -384,11 +427,17 @@ impl Journal {
             self.answers
                 .execute("INSERT OR REPLACE INTO languages VALUES (?1, ?2)", params![number, language])?;
         }
+        if let Some(chosen) = chosen {
+            let questions = serde_json::to_string(&chosen.questions).expect("words alone");
+            self.answers
+                .execute("INSERT OR REPLACE INTO chosen VALUES (?1, ?2)", params![number, questions])?;
+        }
         let place = self.people.len();
         self.people.push(Person {
             number,
             name: name.clone(),
             form: *form,
+            chosen: chosen.clone(),
             choices: Vec::new(),
             last_ms: *since_ms,
             finished: false,
@@ -404,8 +453,8 @@ impl Journal {
     }
 
     fn dealt(&self, person: usize, token: String) -> Dealt {
-        let Person { name, form, choices, .. } = &self.people[person];
-        let (form, answered) = (self.forms[form - 1].clone(), choices.len() as u32);
+        let Person { name, form, chosen, choices, .. } = &self.people[person];
+        let (form, answered) = (self.entry(*form, chosen).clone(), choices.len() as u32);
         Dealt { participant: name.clone(), token, form, answered }
     }
 
@@ -420,7 +469,8 @@ impl Journal {
         now_ms: i64,
     ) -> rusqlite::Result<Result<(), Refusal>> {
         if let Some(newcomer) = self.newcomer(token) {
-            if let Err(refusal) = check(answer, &self.kinds, &self.forms[newcomer.form - 1], 0) {
+            let form = self.entry(newcomer.form, &newcomer.chosen);
+            if let Err(refusal) = check(answer, &self.kinds, form, 0) {
                 return Ok(Err(refusal));
             }
             if self.people.len() >= MOST {
@@ -430,7 +480,7 @@ impl Journal {
         }
         let Some(&place) = self.by_token.get(token) else { return Ok(Err(Refusal::UnknownToken)) };
         let person = &self.people[place];
-        let form = &self.forms[person.form - 1];
+        let form = self.entry(person.form, &person.chosen);
         if let Err(refusal) = check(answer, &self.kinds, form, person.choices.len() as u32) {
             return Ok(Err(refusal));
         }
@@ -459,14 +509,16 @@ impl Journal {
     /// If SQLite fails.
     pub(crate) fn finish(&mut self, token: &str, now_ms: i64) -> rusqlite::Result<Result<(), Refusal>> {
         if let Some(newcomer) = self.newcomer(token) {
-            return Ok(Err(Refusal::Unfinished(self.forms[newcomer.form - 1].questions.len() as u32)));
+            let form = self.entry(newcomer.form, &newcomer.chosen);
+            return Ok(Err(Refusal::Unfinished(form.questions.len() as u32)));
         }
         let Some(&person) = self.by_token.get(token) else { return Ok(Err(Refusal::UnknownToken)) };
-        let person = &mut self.people[person];
-        let left = self.forms[person.form - 1].questions.len() - person.choices.len();
+        let of = &self.people[person];
+        let left = self.entry(of.form, &of.chosen).questions.len() - of.choices.len();
         if left > 0 {
             return Ok(Err(Refusal::Unfinished(left as u32)));
         }
+        let person = &mut self.people[person];
         if !person.finished {
             let finish = "UPDATE participants SET finished_ms = ?2, last_ms = ?2 WHERE number = ?1";
             self.answers.execute(finish, params![person.number, now_ms])?;

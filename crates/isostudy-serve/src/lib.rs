@@ -32,5 +32,5 @@ mod server;
 pub mod shown;
 
 pub use completions::Completions;
-pub use journal::random_hex;
+pub use journal::{Asked, Chooser, random_hex};
 pub use server::{Judge, Limits, NoPublicUrl, PublicUrl, Rule, SHORTEST_TOKEN, ServeError, Settings, serve};

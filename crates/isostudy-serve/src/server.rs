@@ -19,7 +19,7 @@ pub use stopping::{Judge, Rule};
 
 use crate::cameras;
 use crate::completions::Completions;
-use crate::journal::{self, Handle, Held, Journal, JournalError, Loss};
+use crate::journal::{self, Chooser, Handle, Held, Journal, JournalError, Loss};
 use crate::machine::{Machine, System};
 use crate::page::{self, LibraryFile, Media, Served, forms_js};
 use addresses::{Budgets, Peer};
@@ -30,7 +30,7 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use isostudy_design::config::Panel;
-use isostudy_design::forms::{FormFile, KeyEntry, Quotas};
+use isostudy_design::forms::{ANY_FORM, FormFile, KeyEntry, Quotas};
 use std::collections::BTreeSet;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
@@ -71,6 +71,8 @@ pub struct Settings {
     pub panel: Panel,
     /// How many people the study takes.
     pub quotas: Quotas,
+    /// What chooses questions of newcomers, in a study that asks each person where an answer tells most.
+    pub chooser: Option<Chooser>,
     /// When a study that runs is looked at.
     pub rule: Option<Rule>,
     /// Values of the questions that check attention.
@@ -174,11 +176,13 @@ type Site = State<Arc<Shared>>;
 /// # Errors
 /// [`ServeError`]; also when answers can no longer be kept, in which case whatever was acknowledged is on disk.
 pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr, Held)) -> Result<(), ServeError> {
+    let anywhere = settings.key.iter().filter(|of| of.form == ANY_FORM).map(|of| &of.stimulus);
     let stimuli: BTreeSet<String> = settings
         .file
         .forms
         .iter()
         .flat_map(|form| form.training.iter().chain(&form.questions))
+        .chain(anywhere)
         .cloned()
         .collect();
     for code in &stimuli {
@@ -195,6 +199,9 @@ pub fn serve(settings: Settings, ready: impl FnOnce(SocketAddr, Held)) -> Result
     let machine = Arc::new(System);
     let mut journal = Journal::open(&settings.answers, &settings.file, &settings.digest, settings.loss)?;
     journal.limit(settings.quotas.clone());
+    if let Some(chooser) = &settings.chooser {
+        journal.choose_by(chooser.clone());
+    }
     let held = journal.held();
     if journal.is_uncounted() {
         machine.note(format!(

@@ -1,6 +1,6 @@
 //! What was shown to whom, as JSON: for a researcher who has to answer for it.
 
-use crate::export::Given;
+use crate::export::{Given, Key};
 use crate::journal::Departures;
 use crate::screen::Screen;
 use isostudy_design::forms::{FormFile, KeyEntry, Language};
@@ -60,12 +60,10 @@ pub fn json<'a>(
     languages: &'a BTreeMap<String, String>,
     departures: Departures,
 ) -> String {
-    let places: BTreeMap<(usize, usize), &KeyEntry> =
-        key.iter().map(|line| ((line.form, line.order), line)).collect();
+    let known = Key::of(key);
     let first = file.languages.first().map_or("en", String::as_str);
     let pair = |given: &'a Given| -> Option<&'a KeyEntry> {
-        let entry = places.get(&(given.form, given.answer.order as usize)).copied();
-        entry.filter(|entry| entry.stimulus == given.answer.stimulus)
+        known.entry(given.form, given.answer.order, &given.answer.stimulus)
     };
     let person = |of: &'a [Given]| {
         let pairs = of.iter().map(|one| {

@@ -160,10 +160,34 @@ const CHOICES: u64 = 0xc401_ce00;
 pub fn next_pairs(answered: &Pairs, person: usize, number: usize, seed: u64) -> Vec<[usize; 2]> {
     let items = answered.items;
     let mut pairs = dealt_pairs(items, person, number.min(items * (items - 1) / 2) / 2, seed);
+    let number = number.saturating_sub(pairs.len());
+    pairs.extend(chosen_pairs(answered, &|_, _| true, &pairs, person, number, seed));
+    pairs
+}
+
+/// The pairs that tell most beside those that a person is `dealt` in any case: `number` of them, or all that are left of those that
+/// `may_be_asked`, which is told the lower item first.
+///
+/// Otherwise as [`next_pairs`].
+///
+/// # Panics
+/// With fewer than two items.
+pub fn chosen_pairs(
+    answered: &Pairs,
+    may_be_asked: &dyn Fn(usize, usize) -> bool,
+    dealt: &[[usize; 2]],
+    person: usize,
+    number: usize,
+    seed: u64,
+) -> Vec<[usize; 2]> {
+    let items = answered.items;
+    let mut pairs = dealt.to_vec();
+    let number = dealt.len() + number;
     let mut known = Known::of(answered);
     pairs.iter().for_each(|&[left, right]| known.ask(left, right));
     let mut random = stream(seed ^ CHOICES, person as u64);
-    let is_open = |&(a, b): &(usize, usize)| !pairs.contains(&[a, b]) && !pairs.contains(&[b, a]);
+    let is_open =
+        |&(a, b): &(usize, usize)| may_be_asked(a, b) && !pairs.contains(&[a, b]) && !pairs.contains(&[b, a]);
     let candidate = |(order, pair): (usize, (usize, usize))| Candidate {
         tells: known.tells(pair.0, pair.1),
         order,
@@ -183,7 +207,7 @@ pub fn next_pairs(answered: &Pairs, person: usize, number: usize, seed: u64) -> 
         known.ask(a, b);
         pairs.push(if random.random() { [b, a] } else { [a, b] });
     }
-    pairs
+    pairs.split_off(dealt.len())
 }
 
 #[cfg(test)]

@@ -63,7 +63,7 @@ mod tipping;
 #[cfg(test)]
 mod golden;
 
-pub use adaptive::{Known, Shrunken, dealt_pairs, expected_information, next_pairs, shrunken};
+pub use adaptive::{Known, Shrunken, chosen_pairs, dealt_pairs, expected_information, next_pairs, shrunken};
 pub use attribute::{Attribute, AttributeTest, ORDERS, attribute_test};
 pub use ballot::{Answer, Ballot, DeclaredBallot, Outcome, Preference, ShownBallot};
 pub use closeness::{Closeness, closeness};

@@ -25,6 +25,7 @@ pub(crate) mod validate;
 pub(crate) mod verify;
 
 // What several of them share.
+mod adaptive;
 mod checked_study;
 mod faults;
 mod given_answers;

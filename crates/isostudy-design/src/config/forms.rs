@@ -173,6 +173,9 @@ pub struct FormsSection {
     /// Whether participants may change their last answer.
     #[serde(default, skip_serializing_if = "is_false")]
     pub go_back: bool,
+    /// Whether a server chooses half of a participant's questions by what others have answered.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub adaptive: bool,
 }
 
 /// Who sends participants.

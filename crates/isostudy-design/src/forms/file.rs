@@ -1,12 +1,12 @@
 //! Forms as a file for whoever puts them to people, and the key for whoever reads the answers.
 
 use super::about::AboutEntry;
-use super::{Form, Questionnaire, Role};
+use super::{Form, Questionnaire, Role, Trial};
 use crate::config::{
     AboutSection, AnswerKind, ENDS, Presentation, Way, is_english_alone, is_false, is_steps, languages, steps,
 };
 use crate::method::ConfigurationId;
-use crate::study::Study;
+use crate::study::{Comparison, Study};
 use crate::texts::{ENGLISH, Texts, english, shipped};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -97,12 +97,15 @@ pub struct FormEntry {
     pub questions: Vec<String>,
 }
 
+/// The form of lines of the key that are of no form: what a server may show anybody.
+pub const ANY_FORM: usize = 0;
+
 /// A line of the key to forms: what a participant was shown at a place. Never to be given to participants.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KeyEntry {
-    /// The form's number, from 1.
+    /// The form's number, from 1; [`ANY_FORM`] of what a server may choose.
     pub form: usize,
-    /// Place in the form, from 1, training included.
+    /// Place in the form, from 1, training included; 0 of what a server may choose.
     pub order: usize,
     /// Code name of the pair.
     pub stimulus: String,
@@ -220,32 +223,66 @@ impl Questionnaire<'_> {
         Quotas { per_form: self.section.per_form, options: options.collect() }
     }
 
-    /// What each place of each planned form shows.
+    /// What each place of each planned form shows. Where a server chooses questions, everything that it may choose follows, in
+    /// [`ANY_FORM`].
     pub fn key(&self) -> Vec<KeyEntry> {
         let codes = self.codes();
-        let mut key = Vec::new();
-        for form in self.planned() {
-            for (place, trial) in form.trials.iter().enumerate() {
-                let comparison = trial.comparison.map(|i| &self.study.comparisons[i]);
-                let objects = &self.study.file.objects;
-                let object = objects.iter().find(|object| object.id == trial.shown[0].object);
-                let of_pair = self.section.way.is_of_pairs();
-                let names: Vec<String> = trial.shown.iter().map(ToString::to_string).collect();
-                key.push(KeyEntry {
-                    form: form.participant + 1,
-                    order: place + 1,
-                    stimulus: codes[&trial.shown].clone(),
-                    role: trial.role,
-                    question: trial.question.clone(),
-                    object: object.map_or_else(String::new, |object| object.name.clone()),
-                    group: comparison.map_or_else(String::new, |c| self.study.groups[c.group].id.clone()),
-                    left: names.first().filter(|_| of_pair).cloned().unwrap_or_default(),
-                    right: names.get(1).filter(|_| of_pair).cloned().unwrap_or_default(),
-                    shown: if of_pair { String::new() } else { names.join(" ") },
-                });
-            }
+        let planned = self.planned();
+        let of_form = |form: &Form| {
+            let entry = |(place, trial): (usize, &Trial)| {
+                self.key_entry(trial, (form.participant + 1, place + 1), codes[&trial.shown].clone())
+            };
+            form.trials.iter().enumerate().map(entry).collect::<Vec<_>>()
+        };
+        let mut key: Vec<KeyEntry> = planned.iter().flat_map(of_form).collect();
+        if self.section.adaptive {
+            key.extend(
+                self.choices_of_server()
+                    .iter()
+                    .map(|trial| self.key_entry(trial, (ANY_FORM, 0), codes[&trial.shown].clone())),
+            );
         }
         key
+    }
+
+    fn key_entry(&self, trial: &Trial, (form, order): (usize, usize), stimulus: String) -> KeyEntry {
+        let comparison = trial.comparison.map(|i| &self.study.comparisons[i]);
+        let objects = &self.study.file.objects;
+        let object = objects.iter().find(|object| object.id == trial.shown[0].object);
+        let of_pair = self.section.way.is_of_pairs();
+        let names: Vec<String> = trial.shown.iter().map(ToString::to_string).collect();
+        KeyEntry {
+            form,
+            order,
+            stimulus,
+            role: trial.role,
+            question: trial.question.clone(),
+            object: object.map_or_else(String::new, |object| object.name.clone()),
+            group: comparison.map_or_else(String::new, |c| self.study.groups[c.group].id.clone()),
+            left: names.first().filter(|_| of_pair).cloned().unwrap_or_default(),
+            right: names.get(1).filter(|_| of_pair).cloned().unwrap_or_default(),
+            shown: if of_pair { String::new() } else { names.join(" ") },
+        }
+    }
+
+    /// Every comparison on each of the sides on which there is a stimulus of it.
+    fn choices_of_server(&self) -> Vec<Trial> {
+        let known = self.codes();
+        let of = |(i, comparison): (usize, &Comparison)| {
+            let both = [
+                vec![comparison.left.clone(), comparison.right.clone()],
+                vec![comparison.right.clone(), comparison.left.clone()],
+            ];
+            let question = &comparison.question;
+            let trial = |shown| Trial {
+                role: Role::Comparison,
+                question: question.clone(),
+                comparison: Some(i),
+                shown,
+            };
+            both.into_iter().filter(|shown| known.contains_key(shown)).map(trial).collect::<Vec<_>>()
+        };
+        self.study.comparisons.iter().enumerate().flat_map(of).collect()
     }
 
     /// Code names by what is shown. A study's stimuli are all that its forms show.

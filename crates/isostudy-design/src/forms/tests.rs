@@ -55,6 +55,7 @@ fn balanced(participants: u32, controls: u32, repeats: u32, max_questions: u32) 
         completion_full: None,
         per_form: None,
         go_back: false,
+        adaptive: false,
         stimulus: Default::default(),
         three: None,
     }

@@ -185,6 +185,23 @@ fn check_choices(
     c.texts(key, texts)
 }
 
+/// What is needed where a server chooses questions: answers to pairs, of which none is asked about twice.
+fn check_adaptive(c: &Checker<'_>, forms: &FormsSection) -> Result<(), ConfigError> {
+    if !matches!(forms.way, Way::Pairs | Way::Forced) {
+        let limit =
+            format!("goes with forms.way = \"pairs\" and \"forced\", and not \"{}\"", forms.way.code());
+        return c.refuse("forms.adaptive", "true", limit);
+    }
+    if forms.repeats > 0 {
+        return c.refuse(
+            "forms.repeats",
+            forms.repeats,
+            "must be 0 with forms.adaptive: nothing is asked twice",
+        );
+    }
+    Ok(())
+}
+
 /// What those need who do not ask about pairs, without what needs the study's configurations.
 fn check_several(c: &Checker<'_>, forms: &FormsSection) -> Result<(), ConfigError> {
     if forms.controls > 0 {
@@ -244,6 +261,9 @@ pub(super) fn check_forms(
         let most = (0..forms.repeats).rev().find(|&repeats| holds(repeats)).unwrap_or(0);
         let limit = format!("with forms.max_questions = {} at most {most} fit", forms.max_questions);
         return c.refuse("forms.repeats", forms.repeats, limit);
+    }
+    if forms.adaptive {
+        check_adaptive(c, forms)?;
     }
     c.text("forms.prompt", &forms.prompt, "must say what is asked about each pair")?;
     check_choices(c, forms, "forms.choices", Some(&forms.choices).filter(|texts| !texts.is_empty()))?;

@@ -16,7 +16,16 @@ const MOST: usize = 12;
 
 /// How people were asked, where it is not in pairs with three answers.
 pub(super) fn asked(study: &Study) -> Option<String> {
-    match study.file.forms.as_ref()?.way {
+    let forms = study.file.forms.as_ref()?;
+    if forms.adaptive {
+        return Some(
+            "Answers that were there before decided half of what each person was asked. Then intervals of the likelihood alone are too \
+             narrow: of such at 95 %, 89 to 94 % hold the truth. The model of worths drawn together is made for it. The tests \
+             of contrasts reject in 4 to 9 % where 5 % are meant."
+                .into(),
+        );
+    }
+    match forms.way {
         Way::Pairs => None,
         Way::Forced => Some(
             "They had to choose one of the two: \u{201c}no preference\u{201d} was no answer. So to decide between equals is no \
@@ -147,5 +156,6 @@ fn named(model: WayModel) -> &'static str {
         WayModel::Adjacent | WayModel::Cumulative => "five steps",
         WayModel::Ratings => "ratings",
         WayModel::FirstChoice => "the best of several",
+        WayModel::DrawnTogether => "worths drawn together",
     }
 }

@@ -19,13 +19,14 @@ impl Journal {
         track: &Track,
     ) -> rusqlite::Result<Result<(), Refusal>> {
         let Some(&person) = self.by_token.get(token) else {
-            let waits = self
-                .newcomer(token)
-                .map(|of| Refusal::OutOfOrder { given: order, next: first_place(&self.forms[of.form - 1]) });
+            let waits = self.newcomer(token).map(|of| Refusal::OutOfOrder {
+                given: order,
+                next: first_place(self.entry(of.form, &of.chosen)),
+            });
             return Ok(Err(waits.unwrap_or(Refusal::UnknownToken)));
         };
         let person = &self.people[person];
-        let first = first_place(&self.forms[person.form - 1]);
+        let first = first_place(self.entry(person.form, &person.chosen));
         let next = first + person.choices.len() as u32;
         if order < first {
             return Ok(Err(Refusal::UnknownPlace(order)));

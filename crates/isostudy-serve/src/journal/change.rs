@@ -16,7 +16,7 @@ impl Journal {
         now_ms: i64,
     ) -> rusqlite::Result<Result<(), Refusal>> {
         let of = &self.people[person];
-        let place = (answer.order - first_place(&self.forms[of.form - 1])) as usize;
+        let place = (answer.order - first_place(self.entry(of.form, &of.chosen))) as usize;
         let known: Option<u32> = self
             .answers
             .prepare_cached("SELECT number FROM changes WHERE participant = ?1 AND place = ?2")?

@@ -35,6 +35,8 @@ const ANSWERS_SCHEMA: &str = "
     CREATE TABLE IF NOT EXISTS cameras (
         participant INTEGER NOT NULL REFERENCES participants, place INTEGER NOT NULL, track TEXT NOT NULL,
         PRIMARY KEY (participant, place)) WITHOUT ROWID;
+    CREATE TABLE IF NOT EXISTS chosen (
+        participant INTEGER PRIMARY KEY REFERENCES participants, questions TEXT NOT NULL);
     CREATE TABLE IF NOT EXISTS languages (
         participant INTEGER PRIMARY KEY REFERENCES participants, language TEXT NOT NULL);
     CREATE TABLE IF NOT EXISTS departures (kind TEXT PRIMARY KEY, number INTEGER NOT NULL) WITHOUT ROWID;";
@@ -116,6 +118,14 @@ pub(super) fn open(machine: &dyn Machine, from: &Path, folder: &Path) -> Result<
         answers: database(ANSWERS, ANSWERS_SCHEMA)?,
         identities: database(IDENTITIES, IDENTITIES_SCHEMA)?,
     })
+}
+
+/// Code names of what was chosen for people to be asked, by the numbers of these people. What cannot be read is nobody's.
+pub(super) fn chosen(answers: &Connection) -> rusqlite::Result<Vec<(i64, Vec<String>)>> {
+    let mut statement = answers.prepare("SELECT participant, questions FROM chosen")?;
+    let rows = statement.query_map([], |row| Ok((row.get::<_, i64>(0)?, row.get::<_, String>(1)?)))?;
+    let read = |(number, questions): (i64, String)| Some((number, serde_json::from_str(&questions).ok()?));
+    Ok(rows.collect::<rusqlite::Result<Vec<_>>>()?.into_iter().filter_map(read).collect())
 }
 
 /// Nothing is missing: the log may be merged into the database, and removed, when it is closed.

@@ -2,6 +2,7 @@
 
 use super::{Held, Journal, Person, files};
 use crate::record::{About, Choice};
+use isostudy_design::forms::FormEntry;
 use std::collections::HashMap;
 
 impl Journal {
@@ -21,6 +22,7 @@ impl Journal {
                 number,
                 name: row.get(1)?,
                 form: form as usize,
+                chosen: None,
                 choices: Vec::new(),
                 last_ms: row.get(4)?,
                 finished,
@@ -29,6 +31,14 @@ impl Journal {
             by_number.insert(number, self.people.len());
             self.by_token.insert(row.get(2)?, self.people.len());
             self.people.push(person);
+        }
+        for (number, questions) in files::chosen(&self.answers)? {
+            let person = by_number.get(&number).map(|&place| &mut self.people[place]);
+            if let Some(person) = person
+                && let Some(planned) = self.forms.get(person.form.wrapping_sub(1))
+            {
+                person.chosen = Some(FormEntry { questions, ..planned.clone() });
+            }
         }
         let mut statement =
             self.answers.prepare("SELECT participant, choice FROM answers ORDER BY participant, place")?;

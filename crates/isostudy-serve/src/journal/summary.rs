@@ -2,9 +2,10 @@
 
 use super::departures::Departures;
 use super::{GIVEN_UP_MS, Journal};
+use crate::export::Key;
 use isostudy_design::forms::KeyEntry;
 use serde::Serialize;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// Whoever has answered within this time is there now.
 const RECENT_MS: i64 = 2 * 60_000;
@@ -83,21 +84,21 @@ impl Journal {
             answering += 1;
             forms[newcomer.form - 1][1] += 1;
         }
-        let asked: HashMap<(usize, usize), &str> =
-            key.iter().map(|line| ((line.form, line.order), line.question.as_str())).collect();
+        let known = Key::of(key);
         let mut per_minute = vec![0; 60];
         // Shorter ids first, so that Q10 follows Q9.
         let mut times: BTreeMap<(usize, &str), Vec<i64>> = BTreeMap::new();
         let mut statement = self.answers.prepare(
-            "SELECT form, place, rt_ms, received_ms FROM answers JOIN participants ON participant = number",
+            "SELECT form, place, rt_ms, received_ms, stimulus FROM answers JOIN participants ON participant = number",
         )?;
         let mut rows = statement.query([])?;
         let mut answers = 0;
         while let Some(row) = rows.next()? {
             answers += 1;
             let (form, place): (i64, i64) = (row.get(0)?, row.get(1)?);
-            if let Some(question) = asked.get(&(form as usize, place as usize)) {
-                times.entry((question.len(), question)).or_default().push(row.get(2)?);
+            let stimulus: String = row.get(4)?;
+            if let Some(entry) = known.entry(form as usize, place as u32, &stimulus) {
+                times.entry((entry.question.len(), &entry.question)).or_default().push(row.get(2)?);
             }
             let ago = (now_ms - row.get::<_, i64>(3)?).max(0) / 60_000;
             if ago < 60 {

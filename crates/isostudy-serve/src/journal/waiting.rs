@@ -3,6 +3,7 @@
 
 use super::GIVEN_UP_MS;
 use crate::record::{About, Identifiers, Refusal};
+use isostudy_design::forms::FormEntry;
 use std::collections::HashMap;
 
 /// Most who wait at a time: 40 MB. Of more, who comes last is refused; nobody is forgotten within two hours.
@@ -14,6 +15,8 @@ pub(super) struct Newcomer {
     pub(super) name: String,
     pub(super) token: String,
     pub(super) form: usize,
+    /// What was chosen for this person, in the place of what the form plans.
+    pub(super) chosen: Option<FormEntry>,
     pub(super) identifiers: Identifiers,
     pub(super) language: Option<String>,
     pub(super) about: About,
@@ -92,6 +95,7 @@ mod tests {
             name: String::new(),
             token: token.to_string(),
             form: 1,
+            chosen: None,
             identifiers: Identifiers::default(),
             language: None,
             about: About::new(),

@@ -40,7 +40,7 @@ impl Journal {
         for table in ["identities", "about"] {
             self.identities.execute(&format!("DELETE FROM {table} WHERE participant = ?1"), [&name])?;
         }
-        for table in ["answers", "screens", "changes", "cameras", "languages"] {
+        for table in ["answers", "screens", "changes", "cameras", "chosen", "languages"] {
             self.answers.execute(&format!("DELETE FROM {table} WHERE participant = ?1"), [number])?;
         }
         self.answers.execute("DELETE FROM participants WHERE number = ?1", [number])?;

@@ -82,6 +82,7 @@ fn settings(folder: &Path, loss: Loss) -> Settings {
         completions: Default::default(),
         panel: Default::default(),
         quotas: Default::default(),
+        chooser: None,
         attention: Vec::new(),
         rule: None,
         public_url: Some("https://study.example.org".parse().unwrap()),

@@ -1,5 +1,6 @@
 //! `isostudy serve`: the questionnaire on the web, for as long as it runs.
 
+use super::adaptive;
 use super::bundle::{self, Made, stimuli, videos};
 use super::checked_study;
 use super::stopping;
@@ -84,6 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         panel: section.panel,
         quotas: questionnaire.quotas(),
         attention: questionnaire.attention(),
+        chooser: adaptive::chooser(&study),
         rule: stopping::rule(&study, &file, &key),
         media,
         library,

@@ -58,6 +58,7 @@ fn settings() -> Settings {
         completions: Default::default(),
         panel: Default::default(),
         quotas: Default::default(),
+        chooser: None,
         attention: Vec::new(),
         rule: None,
         public_url: None,
