@@ -1,5 +1,6 @@
 //! Tests of the whole: the command as a user runs it, and the pages and files it makes.
 
+mod adaptive;
 mod answers;
 mod any_method;
 mod asking;
@@ -27,6 +28,7 @@ mod memory;
 mod messages;
 mod models;
 mod named;
+mod own_files;
 mod page;
 mod parts;
 mod people;

@@ -79,7 +79,7 @@ test('nobody can answer before one turn', async () => {
   await page.locator('.pair img').first().waitFor();
   await page.keyboard.press('1');
   await page.locator('[data-choice="R"]').click({ force: true });
-  assert.equal(await page.locator('#status').textContent(), 'Please watch one whole turn first.');
+  assert.equal(await page.locator('#status').textContent(), 'Please watch it to the end first.');
   await answer(page, 'L');
 });
 
@@ -309,7 +309,7 @@ test('reduced motion stands still until it is played', async () => {
   assert.equal(await page.locator('.pair img').first().isVisible(), false);
   assert.equal(await page.locator('.pair canvas').first().isVisible(), true);
   await page.keyboard.press('1');
-  await page.getByText('Please play one whole turn first.').waitFor();
+  await page.getByText('Please play it to the end first.').waitFor();
   await page.getByRole('button', { name: 'Play' }).click();
   await answer(page, 'L');
 });
@@ -567,7 +567,7 @@ test('on a slow line the first pair comes during consent, the share is told, and
   assert.equal(await page.locator('.half').count(), 0, 'nothing of it is seen');
   const began = Date.now();
   await page.keyboard.press('1');
-  assert.equal(await page.locator('#status').textContent(), 'Please wait until both surfaces are loaded.');
+  assert.equal(await page.locator('#status').textContent(), 'Please wait until both pictures are loaded.');
   if (process.env.PICTURES) await page.screenshot({ path: path.join(process.env.PICTURES, 'loading.png') });
   await page.waitForTimeout(600);
   await throughput(100 * bytes);
@@ -631,7 +631,7 @@ test('a window that is too small asks for a larger one, and takes no answer', as
   await page.evaluate(() => { window.ISOSTUDY.min_surface_px = 200; });
   await page.getByLabel(/Your number/).fill('1');
   await begin(page);
-  await page.getByText(/This window is too small: each surface has to be 200 pixels wide/).waitFor();
+  await page.getByText(/This window is too small: each picture has to be 200 pixels wide/).waitFor();
   await page.waitForTimeout(600);
   await page.keyboard.press('1');
   assert.match(await page.locator('h2').textContent(), /Practice 1/);

@@ -11,6 +11,7 @@ mod methods;
 mod objects;
 mod pictures;
 mod responses;
+mod stimuli;
 mod sweep;
 mod viewer;
 mod way;
@@ -28,6 +29,8 @@ pub(crate) use objects::check_objects;
 pub use objects::{CameraSection, ObjectSection, RegionSection};
 pub use pictures::{LightFollows, Look, ShadingSection, StillSection, TurntableSection};
 pub use responses::{PairSection, ResponsesSection, SynonymsSection};
+pub(crate) use stimuli::{STIMULI_SECONDS, STIMULUS_FILMS, STIMULUS_MESHES};
+pub use stimuli::{ShownFile, ShownFileKind, StimuliSection};
 pub use sweep::{Combine, RangeSection, Scale, SettingSection, SweepSection};
 pub use viewer::ViewerSection;
 pub use way::{AnswerKind, Way};
@@ -133,15 +136,6 @@ pub struct LimitsSection {
 impl LimitsSection {
     /// The default of `hours`: a spacing by mistake is found out, and what is meant to take longer says so.
     pub const HOURS: f64 = 1.0;
-}
-
-/// How stimuli are made from turntables.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StimuliSection {
-    /// Whole-number enlargement of a pair in the file, nearest neighbour.
-    #[serde(deserialize_with = "whole")]
-    pub pair_scale: u32,
 }
 
 /// What is timed, and how often.

@@ -3,6 +3,7 @@
 mod about;
 mod checks;
 mod methods;
+mod shown_files;
 mod texts;
 
 use crate::check::{Checker, ConfigError};
@@ -18,6 +19,7 @@ use checks::{
 };
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
+use shown_files::{check_shown_files, completed};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -58,14 +60,15 @@ impl Study {
     }
 
     fn checked(text: &str, path: &Path, target: Option<CpuProfile>) -> Result<Self, ConfigError> {
-        let file: StudyFile = parse_toml(text, path)?;
         let checker = Checker { file: path };
+        let file: StudyFile = parse_toml(&completed(&checker, text)?, path)?;
         check_sections(&checker, &file)?;
         check_objects(&checker, &file.objects)?;
         let (factors, methods) = methods::methods(&checker, &file)?;
         let configurations = cross(&file, &methods);
         let mut groups = groups(&checker, &file, &methods)?;
         let comparisons = comparisons(&checker, &file, &configurations, &mut groups)?;
+        check_shown_files(&checker, &file, &configurations)?;
         check_stills(&checker, &file, &configurations)?;
         check_forms(&checker, &file, &configurations)?;
         file.forms.as_ref().map_or(Ok(()), |forms| about::check(&checker, forms))?;
@@ -73,6 +76,7 @@ impl Study {
 
         let target = match target {
             Some(target) => target,
+            None if file.stimuli.shown_files().is_some() => CpuProfile::any(),
             None => CpuProfile::load(&checker.existing("benchmark.target", &file.benchmark.target)?)?,
         };
         let responses = match &file.responses {

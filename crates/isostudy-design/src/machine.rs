@@ -56,6 +56,11 @@ impl CpuProfile {
     pub fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
         crate::read::parse_toml(text, path)
     }
+
+    /// That of a study that times nothing.
+    pub(crate) fn any() -> Self {
+        Self::parse("name = \"any\"\nmodel = \"\"", Path::new("")).expect("a profile with what it needs")
+    }
 }
 
 /// A level of the x86-64 instruction set (x86-64 psABI, "micro-architecture levels"); each includes those before.

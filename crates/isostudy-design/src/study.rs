@@ -5,7 +5,7 @@ mod methods;
 pub use methods::METHOD;
 
 use crate::check::Checker;
-use crate::config::{ObjectSection, StimulusLook, StudyFile};
+use crate::config::{ObjectSection, ShownFileKind, StimulusLook, StudyFile};
 use crate::machine::CpuProfile;
 use crate::method::{ConfigurationId, FactorSpec, Method, MethodId};
 use crate::published::{BenchmarkRow, Claim, PreferenceCell};
@@ -98,6 +98,16 @@ impl Study {
     /// The object of a configuration.
     pub fn object(&self, configuration: &Configuration) -> &ObjectSection {
         &self.file.objects[configuration.object]
+    }
+
+    /// What the study's own files show; `None` of a study that makes meshes.
+    pub fn shown_files(&self) -> Option<ShownFileKind> {
+        self.file.stimuli.shown_files()
+    }
+
+    /// Whether people are shown films of the study's own.
+    pub fn shows_films(&self) -> bool {
+        self.shown_files() == Some(ShownFileKind::Film)
     }
 
     /// Whether an earlier method makes the same meshes, so that this one differs in its look alone.

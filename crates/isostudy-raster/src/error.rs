@@ -96,6 +96,37 @@ pub enum AnimationError {
     Encode(#[from] gif::EncodingError),
 }
 
+/// Why a picture or film from elsewhere could not be read, put beside another or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FilmError {
+    /// There is no frame.
+    #[error("has no picture")]
+    Empty,
+    /// It is larger than it may be.
+    #[error("is larger than {most}")]
+    Large {
+        /// The limit, in bytes or pixels.
+        most: u64,
+    },
+    /// Two do not go side by side.
+    #[error("{what}: {own} and {other}")]
+    Mismatch {
+        /// What differs.
+        what: &'static str,
+        /// The first one's.
+        own: usize,
+        /// The other's.
+        other: usize,
+    },
+    /// The file is none of its kind, or is damaged.
+    #[error("cannot be read")]
+    Image(#[from] image::ImageError),
+    /// Writing failed.
+    #[error("cannot write the GIF")]
+    Encode(#[from] gif::EncodingError),
+}
+
 /// Why a sheet or picture file could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

@@ -10,6 +10,8 @@
 //! A still is full colour ([`render`]); an animation is palette indices from the start ([`turntable()`]), so that
 //! pairs are put together from finished turntables without drawing or quantising anything twice.
 //!
+//! A [`Film`] is of pictures that were made elsewhere.
+//!
 //! A surface shows its material, or, with a [`Colouring`], numbers of its triangles or vertices on a labelled [`Scale`].
 //!
 //! # Guarantees
@@ -32,6 +34,7 @@ mod colour_map;
 mod colouring;
 mod error;
 mod fill;
+mod film;
 mod gif_file;
 mod index_table;
 mod legend;
@@ -52,7 +55,8 @@ pub use animation::{Animation, turntable, turntable_coloured, turntable_in};
 pub use camera::{Camera, Viewport};
 pub use colour_map::map_colour;
 pub use colouring::{Colouring, Scale, Values};
-pub use error::{AnimationError, PanelError, RasterError};
+pub use error::{AnimationError, FilmError, PanelError, RasterError};
+pub use film::Film;
 pub use gif_file::gif_texts;
 pub use legend::legend;
 pub use palette::Palette;

@@ -40,7 +40,7 @@ window.isostudyLoading = (study) => {
       entry.told(entry.share);
     }
     if (bytes < kind.bytes) throw new Error(`${bytes} of ${kind.bytes} bytes`);
-    return new Blob(parts, { type: kind.type ? kind.type.split(';')[0] : 'image/gif' });
+    return new Blob(parts, { type: kind.type ? kind.type.split(';')[0] : `image/${kind.kind}` });
   }
 
   function begin(code) {

@@ -25,12 +25,13 @@ window.isostudyPair = async (study, text, file, box, make, changed, events) => {
     surface: ['left_surface', 'right_surface', 'number_surface'],
   };
   const said = (i, what) => text(SAID[what][PAIR ? i : 2], { number: i + 1 });
-  const video = file.kind === 'gif' || isModel ? null : make('video', { muted: true, loop: true, playsInline: true, preload: 'auto', className: 'source', 'aria-hidden': 'true' });
+  const isPicture = ['gif', 'png'].includes(file.kind);
+  const video = isPicture || isModel ? null : make('video', { muted: true, loop: true, playsInline: true, preload: 'auto', className: 'source', 'aria-hidden': 'true' });
 
   const halves = Array.from({ length: COUNT }, (_, i) => {
-    const moving = video || isModel ? null : make('img', { alt: said(i, 'turning'), draggable: false, hidden: true });
+    const moving = video || isModel ? null : make('img', { alt: said(i, file.frames === 1 ? 'surface' : 'turning'), draggable: false, hidden: true });
     if (moving) [moving.style.width, moving.style.left] = [`${100 * COUNT}%`, `${-100 * i}%`];
-    const still = make('canvas', { role: 'img', 'aria-label': said(i, video || isModel ? 'surface' : 'stopped') });
+    const still = make('canvas', { role: 'img', 'aria-label': said(i, isPicture && file.frames > 1 ? 'stopped' : 'surface') });
     const name = make('span', { className: 'name', 'aria-hidden': 'true' }, NAMES[i] ?? '');
     return { moving, still, element: make('div', { className: 'half' }, ...(moving ? [moving] : []), still, name) };
   });

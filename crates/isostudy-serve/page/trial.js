@@ -19,7 +19,9 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
   const KEYS = ANSWERS.map((of, i) => [String(i + 1), ...of.slice(3)]);
   // The server takes no longer time for an answer than a day.
   const LONGEST_MS = 86400000;
-  const STILL = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+  // One frame moves nothing, whoever asks for less motion.
+  const isStill = study.media.every(({ frames }) => frames === 1);
+  const STILL = !isStill && window.matchMedia('(prefers-reduced-motion: reduce)').matches;
   const AGAIN_MS = 3000;
   // Degrees after which models have been looked at from another side, however short the time.
   const TURNED_DEG = 90;
@@ -39,7 +41,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
   return (code, title, coming, answer) => {
     const words = make('p', { className: 'wait' });
     const pair = make('div', { className: 'pair', 'data-code': code }, words);
-    const pause = make('button', { type: 'button', className: 'soon' }, text('play'));
+    const pause = make('button', { type: 'button', className: 'soon', hidden: isStill }, text('play'));
     const reset = make('button', { type: 'button', hidden: true }, text('reset'));
     const larger = make('button', { type: 'button', className: 'soon', 'aria-pressed': 'false' }, text('enlarge'));
     const smaller = make('button', { type: 'button', className: 'smaller' }, text('smaller'));
@@ -210,7 +212,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
         shown = null;
         [seenAt, watched, open, wanted] = [null, 0, false, !STILL];
         buttons.forEach((button) => button.setAttribute('aria-disabled', 'true'));
-        [pause.hidden, reset.hidden] = [false, true];
+        [pause.hidden, reset.hidden] = [isStill, true];
         load();
       },
     };
@@ -237,7 +239,7 @@ window.isostudyTrial = ({ study, text, loading, make, say, heading, show, touch 
       } catch {
         if (over) return;
         // The other kind at once; the same again after a while.
-        const other = file !== null && file.kind !== 'gif' && loading.without(file.kind);
+        const other = file !== null && loading.without(file.kind);
         if (!other) {
           words.textContent = text('load_again');
           pair.replaceChildren(words);

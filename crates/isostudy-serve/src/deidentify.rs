@@ -120,7 +120,7 @@ pub fn codebook(
          | `input` | what the answer was given with | `mouse`, `touch`, `pen`, `keyboard` |\n\
          | `dropped` | frames that the browser did not show | from 0 |\n\
          | `hidden_ms` | time for which the page was out of sight, within `rt_ms` | milliseconds |\n\
-         | `shown_as` | as what the pair was shown | `gif`, `mp4`, `webm`, `model` |\n\
+         | `shown_as` | as what the pair was shown | `gif`, `png`, `mp4`, `webm`, `model` |\n\
          | `turned_deg` | degrees by which the participant turned the models, there and back | from 0; empty unless models were shown |\n{about}",
         answers = count(answers, "answer"),
         choices = choices.join(", "),

@@ -47,6 +47,8 @@ pub enum MediaFormat {
     WebM,
     /// The animation, which every browser shows.
     Gif,
+    /// A still picture.
+    Png,
     /// Both surfaces as models, in one binary glTF: `model` to the page.
     Model,
 }
@@ -58,6 +60,7 @@ impl MediaFormat {
             Self::Mp4 => "mp4",
             Self::WebM => "webm",
             Self::Gif => "gif",
+            Self::Png => "png",
             Self::Model => "glb",
         }
     }
@@ -68,6 +71,7 @@ impl MediaFormat {
             Self::Mp4 => "video/mp4",
             Self::WebM => "video/webm",
             Self::Gif => "image/gif",
+            Self::Png => "image/png",
             Self::Model => "model/gltf-binary",
         }
     }
@@ -77,7 +81,7 @@ impl MediaFormat {
         match self {
             Self::Mp4 => Some("video/mp4; codecs=\"avc1.640028\""),
             Self::WebM => Some("video/webm; codecs=\"vp9\""),
-            Self::Gif | Self::Model => None,
+            Self::Gif | Self::Png | Self::Model => None,
         }
     }
 }

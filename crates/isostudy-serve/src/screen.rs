@@ -35,6 +35,8 @@ pub enum Input {
 pub enum ShownAs {
     /// An animation.
     Gif,
+    /// A still picture.
+    Png,
     /// H.264 video.
     Mp4,
     /// VP9 video.

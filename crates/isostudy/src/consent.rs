@@ -104,6 +104,10 @@ fn covers(known: &Allowed, wanted: &Allowed) -> bool {
 
 fn wanted(study: &Study, sandbox: bool, record: &Record) -> Result<Vec<Wanted>> {
     let mut all = Vec::new();
+    // Files are shown, and nothing is run.
+    if study.shown_files().is_some() {
+        return Ok(all);
+    }
     for method in &study.methods {
         let Recipe::Program(program) = recipe::recipe(study, method.id, Purpose::Benchmark)? else {
             continue;

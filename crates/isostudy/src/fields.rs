@@ -114,6 +114,9 @@ fn make(study: &Study, number: usize, object: &ObjectSection) -> Result<ObjectFi
             Ok(of(options.of_soup(&study.resolve(file), *epsilon)?))
         }
         FieldSection::Terrain(keys) => as_it_is(Box::new(TerrainKeys::of(keys)?.terrain(bounds(object))?)),
+        FieldSection::Files {} => {
+            bail!("there is none: the study shows the files of [[stimuli.files]] and makes no meshes")
+        }
     }
 }
 
@@ -364,7 +367,7 @@ pub(crate) fn check(study: &Study) -> Result<()> {
     for (number, object) in study.file.objects.iter().enumerate() {
         let place = || place(study, &format!("objects[{number}].field"));
         match &object.field {
-            FieldSection::Asteroid {} => {}
+            FieldSection::Asteroid {} | FieldSection::Files {} => {}
             FieldSection::Mesh { .. } => {
                 let (source, path) = present_source(study, number, object)?;
                 read_checked(&source, &path).with_context(|| format!("{}: {}", place(), path.display()))?;

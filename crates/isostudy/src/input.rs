@@ -76,6 +76,9 @@ pub(crate) fn study_with(path: &Path, more: &dyn Fn(&Study) -> Result<()>) -> Re
         return Ok(study);
     }
     let study = Study::load(path)?;
+    if study.shown_files().is_some() {
+        return Ok(study);
+    }
     for method in &study.methods {
         recipe(&study, method.id, Purpose::Benchmark)?;
         finish(&study, method.id)?;

@@ -38,6 +38,7 @@ mod region;
 mod run_file;
 mod scattered_file;
 mod seeds;
+mod shown_files;
 mod source;
 mod source_digests;
 mod store;

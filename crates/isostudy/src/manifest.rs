@@ -1,7 +1,7 @@
 //! The manifest of a results folder: every file with its digest, and what made them.
 
 use crate::store::{Store, sha256, write_whole};
-use crate::{fields, recipe};
+use crate::{fields, recipe, shown_files};
 use anyhow::Result;
 use isostudy_design::Study;
 use isostudy_design::machine::Machine;
@@ -53,6 +53,7 @@ impl<'a> Origin<'a> {
         for object in 0..study.file.objects.len() {
             inputs.extend(fields::files(study, object)?);
         }
+        inputs.extend(shown_files::digests(study)?);
         for method in &study.methods {
             inputs.extend(recipe::files(study, method.id)?);
         }

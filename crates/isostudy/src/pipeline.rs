@@ -18,6 +18,7 @@ mod budgets;
 mod bundle;
 mod cases;
 mod expected;
+mod films;
 mod formats;
 mod jobs;
 mod measurements;
@@ -37,6 +38,7 @@ mod worker;
 pub(crate) use ab::AbChoice;
 use accuracies::Accuracies;
 pub(crate) use bundle::forms_digest;
+pub(crate) use films::Shown;
 pub(crate) use jobs::{Planned, REPORT, by_kind};
 pub(crate) use meshes::Meshes;
 pub(crate) use models::{MOST_BYTES, library_of_models, models_folder};
@@ -58,6 +60,7 @@ use isostudy_design::{Configuration, ConfigurationId, Study};
 use measurements::Times;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard};
+use viewer::Viewer;
 
 /// Stages that only commands of their own make; a whole study leaves them in place.
 const ASKED_FOR: [&str; 6] = ["bench/", "bundle", "contact_sheet", "power/", "video/", "web"];
@@ -106,6 +109,9 @@ impl<'a> Pipeline<'a> {
     /// The whole study. What an earlier form of it left behind goes. Returns the published
     /// numbers that ours differ from without a known reason.
     pub(crate) fn study(&self) -> Result<Vec<String>> {
+        if self.study.shown_files().is_some() {
+            return self.study_of_files();
+        }
         let meshes = self.all_meshes(&[])?;
         let turntables = self.turntables(&meshes, &[])?;
         let pairs = self.pairs(&turntables)?;
@@ -123,13 +129,27 @@ impl<'a> Pipeline<'a> {
         let viewer = self.viewer(&meshes, &shown)?;
         let made =
             [turntables, pairs, forms, stills, pictures, chunks, stored, vec![timings, tables]].concat();
-        self.page(&meshes, &made, viewer, &shown)?;
+        self.page(&meshes, &made, viewer, Some(&shown))?;
         // What failed as a job may be asked for by another, until somebody does the whole study.
         let is_by_jobs = self.making != Making::All;
         self.store.retire_untouched(|stage| {
             ASKED_FOR.iter().any(|start| stage.starts_with(start))
                 || is_by_jobs && stage.starts_with("failed/")
         })?;
+        self.unexplained()
+    }
+
+    /// The whole of a study that shows files: what is shown, the forms, and what was answered.
+    fn study_of_files(&self) -> Result<Vec<String>> {
+        let Shown { meshes, turntables, pairs } = self.shown()?;
+        if !self.study.shows_films() {
+            self.finished_videos(&pairs)?;
+        }
+        let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
+        let tables = self.tables_of_answers()?;
+        let made = [turntables, pairs, forms, vec![tables]].concat();
+        self.page(&meshes, &made, Viewer::NotAskedFor, None)?;
+        self.store.retire_untouched(|stage| ASKED_FOR.iter().any(|start| stage.starts_with(start)))?;
         self.unexplained()
     }
 

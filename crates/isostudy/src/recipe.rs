@@ -133,6 +133,9 @@ pub(crate) fn key(study: &Study, id: MethodId) -> String {
 }
 
 fn read(study: &Study, id: MethodId, purpose: Purpose) -> Result<Recipe> {
+    if study.shown_files().is_some() {
+        bail!("there is none: the study shows the files of [[stimuli.files]] and makes no meshes");
+    }
     let recipe = &study.method(id).recipe;
     let mut keys = recipe.settings.clone();
     // Steps go with every kind.
@@ -224,6 +227,9 @@ pub(crate) fn no_kind(kind: &str, in_study: bool) -> String {
 /// # Errors
 /// The first that is not, naming file, key and what is allowed.
 pub(crate) fn check(study: &Study) -> Result<()> {
+    if study.shown_files().is_some() {
+        return Ok(());
+    }
     for method in &study.methods {
         finish(study, method.id)?;
         match recipe(study, method.id, Purpose::Benchmark)? {
@@ -303,6 +309,9 @@ pub(crate) fn inputs(study: &Study, id: MethodId) -> Result<Vec<String>> {
 /// # Errors
 /// If one cannot be read.
 pub(crate) fn files(study: &Study, id: MethodId) -> Result<Vec<(String, String)>> {
+    if study.shown_files().is_some() {
+        return Ok(Vec::new());
+    }
     let files = match recipe(study, id, Purpose::Benchmark)? {
         Recipe::Extractor(_) | Recipe::Family(_) => Vec::new(),
         Recipe::Program(program) => program.files().with_context(|| key(study, id))?,

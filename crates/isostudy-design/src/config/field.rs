@@ -102,6 +102,9 @@ pub enum FieldSection {
         #[serde(default, skip_serializing_if = "is_false")]
         close: bool,
     },
+    /// None: the object is shown from the files of `[[stimuli.files]]`. Nobody writes it; it is what an object without a field has.
+    #[serde(skip_deserializing)]
+    Files {},
     /// Ground with hills, cliffs or caves: `character`, `seed` and what differs from the character. Whoever makes the field
     /// reads the keys.
     Terrain(toml::Table),

@@ -12,7 +12,8 @@ pub struct MethodSection {
     pub id: MethodId,
     /// Name in tables, figures and sentences.
     pub label: String,
-    /// How it makes a mesh: `kind`, and the keys of this kind.
+    /// How it makes a mesh: `kind`, and the keys of this kind. Left out where `[[stimuli.files]]` have what is shown.
+    #[serde(default = "Recipe::of_files")]
     pub recipe: Recipe,
     /// What the method is an example of: names of factors to their levels.
     #[serde(default)]

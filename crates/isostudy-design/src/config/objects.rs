@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// One object of the study.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(try_from = "ObjectKeys")]
 pub struct ObjectSection {
     /// Short id, the first half of a configuration's id.
     pub id: String,
@@ -29,6 +29,71 @@ pub struct ObjectSection {
     /// The part of the surface that is judged; the whole of it if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<RegionSection>,
+}
+
+/// The keys of an object, as they are written. One that is shown from files alone has none but its names.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ObjectKeys {
+    id: String,
+    name: String,
+    field: Option<FieldSection>,
+    isovalue: Option<f64>,
+    min: Option<[f64; 3]>,
+    max: Option<[f64; 3]>,
+    benchmark_spacing: Option<f64>,
+    stimulus_spacing: Option<f64>,
+    camera: Option<CameraSection>,
+    region: Option<RegionSection>,
+}
+
+impl TryFrom<ObjectKeys> for ObjectSection {
+    type Error = String;
+
+    fn try_from(keys: ObjectKeys) -> Result<Self, String> {
+        let has_volume = keys.isovalue.is_some()
+            || keys.min.is_some()
+            || keys.max.is_some()
+            || keys.benchmark_spacing.is_some()
+            || keys.stimulus_spacing.is_some()
+            || keys.camera.is_some()
+            || keys.region.is_some();
+        let ObjectKeys { id, name, field, region, .. } = keys;
+        if field.is_none() && !has_volume {
+            return Ok(Self::of_files(id, name));
+        }
+        let missing = |key: &str| format!("missing field `{key}`");
+        Ok(Self {
+            id,
+            name,
+            field: field.ok_or_else(|| missing("field"))?,
+            isovalue: keys.isovalue.ok_or_else(|| missing("isovalue"))?,
+            min: keys.min.ok_or_else(|| missing("min"))?,
+            max: keys.max.ok_or_else(|| missing("max"))?,
+            benchmark_spacing: keys.benchmark_spacing.ok_or_else(|| missing("benchmark_spacing"))?,
+            stimulus_spacing: keys.stimulus_spacing.ok_or_else(|| missing("stimulus_spacing"))?,
+            camera: keys.camera.ok_or_else(|| missing("camera"))?,
+            region,
+        })
+    }
+}
+
+impl ObjectSection {
+    /// One that is shown from files alone: a ball of radius 1 holds whatever is drawn of it.
+    fn of_files(id: String, name: String) -> Self {
+        Self {
+            id,
+            name,
+            field: FieldSection::Files {},
+            isovalue: 0.0,
+            min: [-1.0; 3],
+            max: [1.0; 3],
+            benchmark_spacing: 1.0,
+            stimulus_spacing: 1.0,
+            camera: CameraSection { distance: 2.0, vertical_fov_rad: 0.8, middle_z: 0.0 },
+            region: None,
+        }
+    }
 }
 
 /// A box in which an object's surface is judged: measures of meshes are given for it alone, beside those of the whole.
@@ -174,6 +239,6 @@ fn check_field(c: &Checker<'_>, key: &str, field: &FieldSection) -> Result<(), C
             c.text(&format!("{key}.file"), file, "must name a file")?;
             epsilon.map_or(Ok(()), |epsilon| c.number(&format!("{key}.epsilon"), epsilon, 0.0, 1e6))
         }
-        FieldSection::Terrain(_) => Ok(()),
+        FieldSection::Terrain(_) | FieldSection::Files {} => Ok(()),
     }
 }

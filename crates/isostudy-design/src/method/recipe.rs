@@ -17,3 +17,10 @@ pub struct Recipe {
     #[serde(flatten)]
     pub settings: toml::Table,
 }
+
+impl Recipe {
+    /// That of a method whose stimuli are files: none. No study file writes its kind.
+    pub(crate) fn of_files() -> Self {
+        Self { kind: "files".into(), settings: toml::Table::new() }
+    }
+}

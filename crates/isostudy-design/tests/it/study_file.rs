@@ -315,7 +315,11 @@ fn full_study() -> StudyFile {
             error_scale: 1.0,
             crease_deg: 1.0,
         },
-        stimuli: StimuliSection { pair_scale: 1 },
+        stimuli: StimuliSection {
+            pair_scale: 1,
+            files: vec![ShownFile { configuration: "ss_bi".parse().unwrap(), file: text() }],
+            duration_s: 1.0,
+        },
         stills: vec![StillSection {
             id: text(),
             caption: text(),
@@ -419,6 +423,7 @@ fn full_study() -> StudyFile {
             completion_full: Some(text()),
             per_form: Some(1),
             go_back: true,
+            adaptive: true,
             stimulus: Presentation::Model,
             three: Some("cache/three".into()),
         }),
@@ -509,6 +514,8 @@ fn fields() -> [FieldSection; 9] {
             FieldSection::Sphere { .. } | FieldSection::Asteroid {} | FieldSection::Mesh { .. } => {}
             FieldSection::Formula { .. } | FieldSection::Volume { .. } | FieldSection::Grid { .. } => {}
             FieldSection::Terrain(_) | FieldSection::Points { .. } | FieldSection::Soup { .. } => {}
+            // Nobody writes it.
+            FieldSection::Files {} => {}
         }
     }
     fields

@@ -5,7 +5,7 @@ use super::faults::fit_to_show;
 use super::study_forms::{forms, no_forms};
 use super::study_run::{Run, with_pipeline};
 use crate::outcome::Outcome;
-use crate::pipeline::{Videos, library_of_models};
+use crate::pipeline::{Shown, Videos, library_of_models};
 use crate::terminal::say;
 use crate::{input, video};
 use anyhow::{Context, Result, bail};
@@ -69,13 +69,11 @@ pub(super) fn make(
     let mut made = None;
     with_pipeline(run, |pipeline, out| {
         let forms = pipeline.forms()?.with_context(|| no_forms(&run.study))?;
-        let meshes = pipeline.stimulus_meshes(&[])?;
+        let Shown { meshes, pairs, .. } = pipeline.shown()?;
         let failed: Vec<String> = pipeline.failed().iter().map(ToString::to_string).collect();
         if !failed.is_empty() {
             bail!("{} failed: people cannot be asked about what is not there", failed.join(", "));
         }
-        let turntables = pipeline.turntables(&meshes, &[])?;
-        let pairs = pipeline.pairs(&turntables)?;
         let models = pipeline.models(&meshes)?;
         pipeline.contact_sheet(&meshes)?;
         if !fit_to_show(&study, Some(out), with_faults)? {

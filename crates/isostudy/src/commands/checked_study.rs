@@ -1,6 +1,6 @@
 //! A study that work can begin on.
 
-use crate::{answer_files, fields, input, prepare, recipe, work_time};
+use crate::{answer_files, fields, input, prepare, recipe, shown_files, work_time};
 use anyhow::Result;
 use isostudy_design::Study;
 use std::path::Path;
@@ -15,11 +15,15 @@ pub(super) fn load(path: &Path) -> Result<Study> {
         prepare::check(study, machine_bytes)?;
         fields::check(study)
     })?;
-    recipe::check(&study)?;
-    prepare::check(&study, machine_bytes)?;
-    prepare::check_cases(&study, machine_bytes)?;
-    fields::check(&study)?;
-    work_time::check(&study)?;
+    if study.shown_files().is_some() {
+        shown_files::check(&study)?;
+    } else {
+        recipe::check(&study)?;
+        prepare::check(&study, machine_bytes)?;
+        prepare::check_cases(&study, machine_bytes)?;
+        fields::check(&study)?;
+        work_time::check(&study)?;
+    }
     if let Some(reading) =
         answer_files::of_study(&study)?.filter(|reading| !reading.report.remarks.is_empty())
     {

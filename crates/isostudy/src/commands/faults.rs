@@ -58,6 +58,10 @@ pub(super) fn faults_text(study: &Study, faults: &[Fault]) -> String {
 /// # Errors
 /// If a file cannot be read.
 pub(super) fn stimulus_faults(study: &Study, results: &Path) -> Result<Option<Vec<Fault>>> {
+    // Films of a study's own are shown as they are, and were held to be alike when they were read.
+    if study.shows_films() {
+        return said_by_files(study, &results.join("stimuli/pairs")).map(Some);
+    }
     let (codes, _) = study.code_names();
     let path = |code: &String| results.join("stimuli/turntables").join(format!("{code}.gif"));
     let files: Vec<_> = codes.iter().map(path).collect();
@@ -125,7 +129,7 @@ fn large_models(study: &Study, results: &Path) -> Result<Vec<Fault>> {
 /// The faults of what participants get: text in the files, and sizes that differ.
 pub(super) fn bundle_faults(study: &Study, folder: &Path) -> Result<Vec<Fault>> {
     let mut faults = said_by_files(study, folder)?;
-    for ending in ["gif", "mp4", "webm", "glb"] {
+    for ending in ["gif", "png", "mp4", "webm", "glb"] {
         let mut sizes = Vec::new();
         for file in input::files_of(folder, ending)? {
             let found = std::fs::metadata(&file).with_context(|| file.display().to_string())?;

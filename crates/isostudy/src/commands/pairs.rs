@@ -25,9 +25,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         video::check()?;
     }
     with_pipeline(&arguments.run, |pipeline, out| {
-        let meshes = pipeline.stimulus_meshes(&[])?;
-        let turntables = pipeline.turntables(&meshes, &[])?;
-        let stamps = pipeline.pairs(&turntables)?;
+        let stamps = pipeline.shown()?.pairs;
         if arguments.mp4 {
             pipeline.videos(&stamps)?;
         } else {

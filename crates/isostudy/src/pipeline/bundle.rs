@@ -5,13 +5,14 @@ use super::web::{LEAST_PADDING, Videos, Web};
 use super::{Meshes, Pipeline};
 use crate::input;
 use crate::picture;
+use crate::shown_files;
 use crate::source_digests;
 use crate::store::{FileStamp, Inputs, Stamp, sha256};
 use crate::terminal::progress::Step;
 use anyhow::Result;
-use isostudy_design::ConfigurationId;
 use isostudy_design::forms::{FormFile, Questionnaire, Stimulus};
 use isostudy_design::record::Purpose;
+use isostudy_design::{Configuration, ConfigurationId};
 use isostudy_raster::tiny_skia::Pixmap;
 use isostudy_serve::page::{LibraryFile, Media, MediaFormat};
 use rand_pcg::Pcg64;
@@ -80,11 +81,9 @@ impl Pipeline<'_> {
             let of_kind = shown.iter().flat_map(|stamp| &stamp.files).filter(|file| ends(file, kind));
             of_kind.map(|file| file.bytes).max().unwrap_or(0) as usize + LEAST_PADDING
         };
-        let turntable = &self.study.file.turntable;
-        let scale = self.study.file.stimuli.pair_scale;
         let media = Media {
             kinds: kinds.iter().map(|&(kind, frames)| (kind, size(kind) as u64, frames)).collect(),
-            surface: [turntable.width, turntable.height].map(|pixels| pixels * scale),
+            surface: self.surface()?,
             shading: shading_of_models(self.study),
         };
         let step = Step::begin("bundle", 1, shown.len());
@@ -127,7 +126,7 @@ impl Pipeline<'_> {
                         bytes.push(0xec);
                         bytes.extend((length | 1 << 56).to_be_bytes());
                     }
-                    MediaFormat::Gif => {}
+                    MediaFormat::Gif | MediaFormat::Png => {}
                     MediaFormat::Model => {
                         // A chunk that no reader knows, with its length and its type in eight bytes.
                         let mut noise = Vec::new();
@@ -157,24 +156,39 @@ impl Pipeline<'_> {
         Ok(media)
     }
 
+    /// Width and height of what stands on one side of a pair, in pixels.
+    fn surface(&self) -> Result<[u32; 2]> {
+        let scale = if self.study.shows_films() { 1 } else { self.study.file.stimuli.pair_scale };
+        Ok(self.shown_size()?.map(|pixels| pixels * scale))
+    }
+
+    /// One side of pairs, its longer side `side_px` long.
+    fn half(&self, configuration: &Configuration, meshes: &Meshes, side_px: u32) -> Result<Pixmap> {
+        if self.study.shows_films() {
+            return Ok(shown_files::film(self.study, configuration)?.thumbnail(side_px)?);
+        }
+        let mesh = self.read_mesh(meshes.stamp(&configuration.id, Purpose::Stimulus))?;
+        let camera = &self.study.object(configuration).camera;
+        let settings = picture::turntable(&self.study.file.turntable, camera);
+        let shading = picture::shading(&self.study.file.shading);
+        picture::thumbnail(&mesh, &settings, &shading, self.study.look(configuration), side_px)
+    }
+
     /// Every pair with its code name and what it shows, on one page: for the researcher.
     pub(crate) fn contact_sheet(&self, meshes: &Meshes) -> Result<Stamp> {
         const HALF_PX: u32 = 128;
         let stimuli = self.study.stimuli();
         let mut inputs = Inputs::of_sources(source_digests::PICTURES).value("study", &self.study.file);
-        for configuration in &self.study.configurations {
-            inputs = inputs.stamp(meshes.stamp(&configuration.id, Purpose::Stimulus));
+        for (file, digest) in shown_files::digests(self.study)? {
+            inputs = inputs.text(&file, &digest);
+        }
+        for stamp in meshes.stamps() {
+            inputs = inputs.stamp(stamp);
         }
         self.stage("contact_sheet", inputs, |writer| {
             let mut halves: HashMap<&ConfigurationId, Pixmap> = HashMap::new();
             for configuration in &self.study.configurations {
-                let mesh = self.read_mesh(meshes.stamp(&configuration.id, Purpose::Stimulus))?;
-                let camera = &self.study.object(configuration).camera;
-                let settings = picture::turntable(&self.study.file.turntable, camera);
-                let shading = picture::shading(&self.study.file.shading);
-                let look = self.study.look(configuration);
-                let half = picture::thumbnail(&mesh, &settings, &shading, look, HALF_PX)?;
-                halves.insert(&configuration.id, half);
+                halves.insert(&configuration.id, self.half(configuration, meshes, HALF_PX)?);
             }
             let question = |s: &Stimulus| {
                 let Some([left, right]) = s.pair() else { return "shown" };

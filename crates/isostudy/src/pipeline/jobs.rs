@@ -7,6 +7,7 @@ mod costs;
 mod files;
 
 use super::cases::{Block, Of, blocks};
+use super::films::pair_stage;
 use super::meshes::{TICKS_A_MESH, purpose_name};
 use super::stimuli::MadeWith;
 use super::tables::study_inputs;
@@ -15,10 +16,10 @@ use super::viewer::has_library;
 use super::{Making, Pipeline, PlanLength};
 use crate::prepare::Wanted;
 use crate::recipe::{self, Recipe, recipe};
-use crate::source_digests;
 use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
 use crate::work_time::Trials;
+use crate::{shown_files, source_digests};
 use anyhow::{Context, Result, bail};
 use files::NamedFiles;
 use isostudy_design::config::StillSection;
@@ -38,6 +39,8 @@ pub(crate) const REPORT: &str = "report";
 enum Job<'s> {
     Budget(Purpose, &'s Configuration),
     Mesh(Purpose, &'s Configuration),
+    /// What all films of a study have in common.
+    Films,
     Turntable(&'s Configuration),
     Pair(Stimulus),
     Still(&'s StillSection),
@@ -82,11 +85,9 @@ impl Job<'_> {
         match self {
             Self::Budget(purpose, of) => format!("budget/{}/{}", purpose_name(*purpose), of.id),
             Self::Mesh(purpose, of) => format!("mesh/{}/{}", purpose_name(*purpose), of.id),
+            Self::Films => "films".into(),
             Self::Turntable(of) => format!("turntable/{}", of.id),
-            Self::Pair(of) => {
-                let names: Vec<String> = of.shown.iter().map(ToString::to_string).collect();
-                format!("pair/{}", names.join("~"))
-            }
+            Self::Pair(of) => pair_stage(of),
             Self::Still(of) => format!("still/{}", of.id),
             Self::ViewerMesh(of, factor) => format!("viewer/{}/{factor}", of.id),
             Self::Timings => "bench/short".into(),
@@ -102,6 +103,7 @@ impl Job<'_> {
         match self {
             Self::Budget(..) => "budget",
             Self::Mesh(..) => "mesh",
+            Self::Films => "films",
             Self::Turntable(_) => "turntable",
             Self::Pair(_) => "pair",
             Self::Still(_) => "still",
@@ -131,6 +133,7 @@ impl Job<'_> {
                 of == other
             }
             (Self::Pair(of), Job::Turntable(other)) => of.shown.contains(&other.id),
+            (Self::Pair(_), Job::Films) => true,
             (Self::Timings | Self::OnMachine(_), Job::Budget(Purpose::Benchmark, _)) => true,
             _ => false,
         }
@@ -242,6 +245,16 @@ impl<'a> Pipeline<'a> {
     fn jobs(&self) -> Result<Vec<Job<'a>>> {
         let study = self.study;
         let all = || study.configurations.iter();
+        if study.shown_files().is_some() {
+            let of_meshes = all().filter(|_| !study.shows_films());
+            let mut jobs: Vec<Job<'_>> =
+                of_meshes.clone().map(|of| Job::Mesh(Purpose::Stimulus, of)).collect();
+            jobs.extend(of_meshes.map(Job::Turntable));
+            jobs.extend(study.shows_films().then_some(Job::Films));
+            jobs.extend(study.stimuli().into_iter().map(Job::Pair));
+            jobs.push(Job::Report);
+            return Ok(jobs);
+        }
         let mut purposes = vec![Purpose::Benchmark, Purpose::Stimulus];
         if recipe::sums_positions(study)? {
             purposes.push(Purpose::Indexed);
@@ -281,8 +294,13 @@ impl<'a> Pipeline<'a> {
     fn carry_out(&self, job: &Job<'_>) -> Result<()> {
         match job {
             Job::Budget(purpose, of) => self.budgets(&[*purpose], std::slice::from_ref(&of.id)),
+            Job::Mesh(_, of) if self.study.shown_files().is_some() => {
+                self.shown_meshes(std::slice::from_ref(&of.id)).map(drop)
+            }
             Job::Mesh(purpose, of) => self.meshes(&[*purpose], std::slice::from_ref(&of.id)).map(drop),
+            Job::Films => self.films().map(drop),
             Job::Turntable(of) => self.with_stimuli(std::slice::from_ref(&of.id), |_, _| Ok(())),
+            Job::Pair(of) if self.study.shows_films() => self.film_pair(of, &self.films()?).map(drop),
             Job::Pair(of) => self.with_stimuli(&of.shown, |pipeline, turntables| {
                 pipeline.pair(of, &turntables.iter().collect::<Vec<_>>()).map(drop)
             }),
@@ -336,6 +354,9 @@ impl<'a> Pipeline<'a> {
     /// What programs and families make: the others go on without what fails of it.
     fn may_fail(&self) -> Result<Vec<&'a Configuration>> {
         let mut may_fail = Vec::new();
+        if self.study.shown_files().is_some() {
+            return Ok(may_fail);
+        }
         for of in &self.study.configurations {
             if matches!(
                 recipe(self.study, of.id.method, Purpose::Benchmark)?,
@@ -390,6 +411,12 @@ impl<'a> Pipeline<'a> {
             Job::Mesh(purpose, of) => self
                 .extraction_inputs(of, *purpose)?
                 .value("spacing", &Wanted::For(*purpose).spacing(self.study.object(of))),
+            Job::Films => {
+                let inputs =
+                    Inputs::of_sources(source_digests::PICTURES).value("duration", &file.stimuli.duration_s);
+                let digests = shown_files::digests(self.study)?;
+                digests.iter().fold(inputs, |inputs, (file, digest)| inputs.text(file, digest))
+            }
             Job::Turntable(of) => Inputs::of_sources(source_digests::PICTURES)
                 .value("outputs", &self.outputs(job))
                 .value("settings", &MadeWith::of(self.study, of))

@@ -5,10 +5,10 @@ use crate::made::Made;
 use crate::memory::Limit;
 use crate::prepare::{Prepared, Wanted};
 use crate::records::{mesh_record, of_mesh};
-use crate::store::{Inputs, Stamp};
+use crate::store::{Inputs, Stamp, sha256};
 use crate::terminal::progress::Step;
 use crate::trilinear_truth::trilinear_truth;
-use crate::{recipe, source_digests};
+use crate::{input, recipe, shown_files, source_digests};
 use anyhow::{Context, Result};
 use isostudy_design::record::{MeshRecord, Purpose};
 use isostudy_design::{Configuration, ConfigurationId};
@@ -24,6 +24,15 @@ pub(crate) struct Meshes {
 }
 
 impl Meshes {
+    /// Those of a study that shows films.
+    pub(super) fn none() -> Self {
+        Self { entries: Vec::new() }
+    }
+
+    pub(super) fn of(entries: Vec<(ConfigurationId, Purpose, Stamp)>) -> Self {
+        Self { entries }
+    }
+
     pub(crate) fn stamps(&self) -> impl Iterator<Item = &Stamp> {
         self.entries.iter().map(|(_, _, stamp)| stamp)
     }
@@ -47,6 +56,9 @@ impl Pipeline<'_> {
 
     /// The meshes that animations show.
     pub(crate) fn stimulus_meshes(&self, only: &[ConfigurationId]) -> Result<Meshes> {
+        if self.study.shown_files().is_some() {
+            return self.shown_meshes(only);
+        }
         self.meshes(&[Purpose::Stimulus], only)
     }
 
@@ -152,6 +164,13 @@ impl Pipeline<'_> {
         configuration: &Configuration,
         purpose: Purpose,
     ) -> Result<Inputs> {
+        if self.study.shown_files().is_some() {
+            let inputs = Inputs::of_sources(source_digests::MESHES).value("id", &configuration.id);
+            // All of an object are placed as one.
+            return self.of_object(configuration).into_iter().try_fold(inputs, |inputs, of| {
+                Ok(inputs.text("file", &sha256(&input::bytes(&shown_files::path(self.study, of)?)?)))
+            });
+        }
         let object = self.study.object(configuration);
         Ok(Inputs::of_sources(source_digests::MESHES)
             .value("id", &configuration.id)

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail, ensure};
 use isostudy_design::config::{LightFollows, Presentation, StimulusLook};
 use isostudy_design::forms::Stimulus;
 use isostudy_design::record::Purpose;
-use isostudy_design::{Configuration, ConfigurationId, Study};
+use isostudy_design::{Configuration, Study};
 use isostudy_mesh::{TriangleMesh, corner_normals};
 use isostudy_serve::page::{LibraryFile, ModelShading, model_scripts};
 use rayon::prelude::*;
@@ -110,11 +110,6 @@ impl Pipeline<'_> {
             let halves = [(&left, looks[0]), (&right, looks[1])];
             writer.write(&format!("{FOLDER}/{code}.glb"), &pair(halves, crease as f32, &camera)?)
         })
-    }
-
-    fn configuration(&self, id: &ConfigurationId) -> &Configuration {
-        let found = self.study.configurations.iter().find(|of| of.id == *id);
-        found.expect("what is shown is of the study")
     }
 }
 

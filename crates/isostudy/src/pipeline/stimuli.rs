@@ -1,5 +1,6 @@
 //! Animations and still pictures of the meshes, and the key to their names.
 
+use super::films::pair_stage;
 use super::meshes::TICKS_A_MESH;
 use super::{Meshes, Pipeline};
 use crate::picture::{self, Drawn};
@@ -122,13 +123,12 @@ impl Pipeline<'_> {
     }
 
     pub(super) fn pair(&self, stimulus: &Stimulus, turntables: &[&Stamp]) -> Result<Stamp> {
-        let Stimulus { code, shown } = stimulus;
+        let code = &stimulus.code;
         let scale = self.study.file.stimuli.pair_scale;
         let inputs = Inputs::of_sources(source_digests::PICTURES);
         let inputs = turntables.iter().fold(inputs, |inputs, turntable| inputs.stamp(turntable));
         let inputs = inputs.text("code", code).value("scale", &scale);
-        let names: Vec<String> = shown.iter().map(ToString::to_string).collect();
-        self.stage(&format!("pair/{}", names.join("~")), inputs, |writer| {
+        self.stage(&pair_stage(stimulus), inputs, |writer| {
             let turned = turntables.iter().map(|turntable| self.read_animation(turntable));
             let turned = turned.collect::<Result<Vec<Animation>>>()?;
             let row = Animation::in_a_row(&turned)?.context("something is shown")?;
@@ -184,10 +184,14 @@ impl Pipeline<'_> {
     }
 
     /// The key is kept apart from the stimuli. Sizes and times of the stimuli still tell; those of the bundle do not.
-    fn key(&self) -> Result<Stamp> {
+    pub(super) fn key(&self) -> Result<Stamp> {
         let (turntables, _) = self.study.code_names();
         let mut key = String::from("file,question,left,right\n");
-        for (configuration, code) in self.study.configurations.iter().zip(&turntables) {
+        let ending = self.pair_ending();
+        let has_turntables = !self.study.shows_films();
+        for (configuration, code) in
+            self.study.configurations.iter().zip(&turntables).filter(|_| has_turntables)
+        {
             key += &format!("{TURNTABLES}/{code}.gif,,{},\n", configuration.id);
         }
         for stimulus in self.study.stimuli() {
@@ -195,14 +199,14 @@ impl Pipeline<'_> {
             let Some([left, right]) = stimulus.pair() else {
                 // In the place of the left one all that is shown, in order.
                 let names: Vec<String> = stimulus.shown.iter().map(ToString::to_string).collect();
-                key += &format!("{PAIRS}/{code}.gif,,{},\n", names.join(" "));
+                key += &format!("{PAIRS}/{code}.{ending},,{},\n", names.join(" "));
                 continue;
             };
             let shows = |c: &&Comparison| {
                 (&c.left, &c.right) == (left, right) || (&c.left, &c.right) == (right, left)
             };
             let question = self.study.comparisons.iter().find(shows).map_or("", |c| c.question.as_str());
-            key += &format!("{PAIRS}/{code}.gif,{question},{left},{right}\n");
+            key += &format!("{PAIRS}/{code}.{ending},{question},{left},{right}\n");
         }
         let inputs = Inputs::of_sources(source_digests::KEYS).text("key", &key);
         self.store.stage("key", inputs, |writer| writer.write("key/stimuli.csv", key.as_bytes()))

@@ -73,11 +73,44 @@ impl Pipeline<'_> {
         Ok(stamp)
     }
 
+    /// Every table and figure of a study of which nothing is measured but answers.
+    pub(super) fn tables_of_answers(&self) -> Result<Stamp> {
+        let step = Step::begin("tables", 1, 1);
+        let waiting = kept_answers::waiting(self.study);
+        let inputs =
+            study_inputs(self.study)?.value("waiting", &waiting.as_ref().map(|of| (of.answers, of.people)));
+        let stamp = self.store.stage("tables", inputs, |writer| {
+            let answers = crate::answer_files::of_study(self.study)?;
+            let answers = answers.and_then(|reading| Answered::of(self.study, reading.responses));
+            let results = Results::of(&answers_alone(self.study, answers.as_ref()));
+            let paper = Paper::of(&results);
+            let gallery = Some(waiting.as_ref().map(|of| Unread::of(self.study, of)));
+            write(writer, &results, &paper, (&[], None), (gallery, More::default()))?;
+            writer.write_json(UNEXPLAINED, &paper.unexplained_differences())
+        })?;
+        step.count(stamp.redone);
+        step.end();
+        Ok(stamp)
+    }
+
     /// The published numbers that ours differ from without a known reason, as the tables stage found them.
     pub(super) fn unexplained(&self) -> Result<Vec<String>> {
         let path = self.store.root().join(UNEXPLAINED);
         let text = std::fs::read(&path).with_context(|| path.display().to_string())?;
         Ok(serde_json::from_slice(&text)?)
+    }
+}
+
+/// What is known of a study without meshes and times.
+fn answers_alone<'a>(study: &'a Study, answers: Option<&'a Answered>) -> isostudy_inference::Inputs<'a> {
+    isostudy_inference::Inputs {
+        study,
+        meshes: &[],
+        bench: None,
+        chunks: &[],
+        stored: &[],
+        answers,
+        left_out: &[],
     }
 }
 
@@ -87,16 +120,7 @@ impl Pipeline<'_> {
 /// If the files cannot be written.
 pub(crate) fn write_answers_only(study: &Study, reading: Reading, store: &Store) -> Result<Said> {
     let answers = Answered::of(study, reading.responses);
-    let inputs = isostudy_inference::Inputs {
-        study,
-        meshes: &[],
-        bench: None,
-        chunks: &[],
-        stored: &[],
-        answers: answers.as_ref(),
-        left_out: &[],
-    };
-    let results = Results::of(&inputs);
+    let results = Results::of(&answers_alone(study, answers.as_ref()));
     let paper = Paper::of(&results);
     store.stage("answers", study_inputs(study)?, |writer| {
         writer.write(READING, reading.report.to_csv().as_bytes())?;

@@ -77,12 +77,12 @@ impl Pipeline<'_> {
     /// # Errors
     /// If ffmpeg fails, or a file cannot be read or written.
     pub(crate) fn web(&self, forms: &FormFile, pairs: &[Stamp], videos: Videos) -> Result<Web> {
+        if self.study.shows_films() {
+            return self.films_for_web(forms, pairs);
+        }
         let frames = self.study.file.turntable.frames;
         let section = self.study.file.forms.as_ref().context("no [forms] section")?;
-        let shown =
-            forms.forms.iter().map(|form| form.training.len() + form.questions.len()).max().unwrap_or(1);
-        let room = u64::from(section.web_mb) * 1_000_000 / shown as u64;
-        let room = room.saturating_sub(LEAST_PADDING as u64);
+        let room = self.room_for_web(forms)?;
         let bytes = |stamp: &Stamp| stamp.files.iter().map(|file| file.bytes).max().unwrap_or(0);
         let fits = pairs.iter().all(|pair| bytes(pair) <= room);
         if fits && videos == Videos::Needed {
@@ -143,6 +143,15 @@ impl Pipeline<'_> {
         kinds.push((MediaFormat::Gif, frames / chosen.step));
         let as_they_are = if fits { pairs } else { &[] };
         Ok(Web { stamps: [&[stamp], as_they_are].concat(), kinds })
+    }
+
+    /// Most bytes of a pair, so that one participant loads at most `forms.web_mb`.
+    pub(super) fn room_for_web(&self, forms: &FormFile) -> Result<u64> {
+        let section = self.study.file.forms.as_ref().context("no [forms] section")?;
+        let shown =
+            forms.forms.iter().map(|form| form.training.len() + form.questions.len()).max().unwrap_or(1);
+        let room = u64::from(section.web_mb) * 1_000_000 / shown as u64;
+        Ok(room.saturating_sub(LEAST_PADDING as u64))
     }
 
     /// Every pair made smaller in the first way in which all fit. `order` begins with what is largest. `None` from `make` is a way

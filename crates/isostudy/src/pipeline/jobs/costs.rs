@@ -21,6 +21,9 @@ const MESHES_HELD: f64 = 10.0;
 const PIXEL_S: f64 = 1.5e-7;
 /// Seconds for tables and pages, for each configuration.
 const PAGES_S: f64 = 0.25;
+/// To read a film or a mesh that is there, and what it unfolds to.
+const SHOWN_S: f64 = 1.0;
+const SHOWN_BYTES: f64 = 256.0 * 1024.0 * 1024.0;
 const PAGES_BYTES: f64 = 4.0 * 1024.0 * 1024.0;
 
 impl<'a> Pipeline<'a> {
@@ -39,6 +42,8 @@ impl<'a> Pipeline<'a> {
                 // About as many steps as bisection takes.
                 self.mesh_cost(of, *purpose, spacing, [8.0, 0.0], trials)?
             }
+            Job::Films => light(SHOWN_S * self.study.configurations.len() as f64, SHOWN_BYTES),
+            Job::Mesh(..) if self.study.shown_files().is_some() => light(SHOWN_S, SHOWN_BYTES),
             Job::Mesh(purpose, of) => {
                 let spacing = Wanted::For(*purpose).spacing(self.study.object(of));
                 self.mesh_cost(of, *purpose, spacing, [1.0, 1.0], trials)?

@@ -2,6 +2,7 @@
 
 use super::Job;
 use crate::pipeline::Pipeline;
+use crate::pipeline::films::FACTS;
 use crate::pipeline::meshes::purpose_name;
 use crate::pipeline::stimuli::MadeWith;
 use crate::{fields, recipe};
@@ -17,8 +18,11 @@ impl Pipeline<'_> {
             Job::Budget(purpose, of) => vec![format!("budgets/{}/{}.json", purpose_name(*purpose), of.id)],
             Job::Mesh(purpose, of) => {
                 let path = format!("meshes/{}/{}", purpose_name(*purpose), of.id);
-                let endings: &[&str] =
-                    if *purpose == Purpose::Indexed { &["json"] } else { &["ply", "json"] };
+                let endings: &[&str] = match purpose {
+                    Purpose::Indexed => &["json"],
+                    _ if self.study.shown_files().is_some() => &["ply"],
+                    _ => &["ply", "json"],
+                };
                 endings.iter().map(|ending| format!("{path}.{ending}")).collect()
             }
             Job::Turntable(of) => {
@@ -26,7 +30,8 @@ impl Pipeline<'_> {
                 let code = place.map_or("", |place| &codes[place]);
                 vec![format!("stimuli/turntables/{code}.gif"), MadeWith::file(&of.id)]
             }
-            Job::Pair(of) => vec![format!("stimuli/pairs/{}.gif", of.code)],
+            Job::Films => vec![FACTS.into()],
+            Job::Pair(of) => vec![format!("stimuli/pairs/{}.{}", of.code, self.pair_ending())],
             Job::Still(of) => ["png", "svg"].map(|ending| format!("figures/{}.{ending}", of.id)).to_vec(),
             Job::ViewerMesh(of, factor) => vec![format!("viewer/{}_{factor}.json", of.id)],
             Job::Timings | Job::OnMachine(_) => {
@@ -73,11 +78,27 @@ impl NamedFiles {
             }
             Job::Cases(_, block) => of == block.configuration,
             Job::Still(still) => of.id == still.configuration,
-            Job::Pair(_) => false,
+            Job::Pair(_) | Job::Films => false,
             Job::Chunks(object) | Job::Stored(object) => of.object == *object,
             Job::Timings | Job::OnMachine(_) | Job::Report => true,
         };
         let mut files = vec![study.path.display().to_string()];
+        let shows = |of: &Configuration| match job {
+            // All of an object are placed as one.
+            Job::Mesh(_, own) => of.object == own.object,
+            Job::Films | Job::Report => true,
+            Job::Pair(pair) => study.shows_films() && pair.shown.contains(&of.id),
+            _ => false,
+        };
+        for of in study.configurations.iter().filter(|of| shows(of)) {
+            files.extend(
+                study
+                    .file
+                    .stimuli
+                    .file_of(&of.id)
+                    .map(|file| study.resolve(&file.file).display().to_string()),
+            );
+        }
         if let (Job::Report, Some(responses)) = (job, &study.responses) {
             files.push(responses.display().to_string());
         }

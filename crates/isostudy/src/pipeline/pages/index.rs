@@ -49,7 +49,7 @@ impl Pipeline<'_> {
         meshes: &Meshes,
         made: &[Stamp],
         viewer: Viewer,
-        shown: &ShownFirst,
+        shown: Option<&ShownFirst>,
     ) -> Result<()> {
         let step = Step::begin("page", 1, 1);
         let mut inputs = Inputs::of_sources(source_digests::PAGES).value("study", &self.study.file);
@@ -65,9 +65,9 @@ impl Pipeline<'_> {
         Ok(())
     }
 
-    fn render_page(&self, viewer: Viewer, shown: &ShownFirst) -> Result<String> {
+    fn render_page(&self, viewer: Viewer, shown: Option<&ShownFirst>) -> Result<String> {
         let said: Abstract = self.read_json(ABSTRACT)?;
-        let pictures = self.page_pictures(shown)?;
+        let pictures = shown.map_or(Ok(Vec::new()), |shown| self.page_pictures(shown))?;
         let stills = self.still_cards()?;
         let tables: Vec<TableEntry> = self.read_json(TABLE_CONTENTS)?;
         let figures: Vec<FigureEntry> = self.read_json(FIGURE_CONTENTS)?;
@@ -80,7 +80,7 @@ impl Pipeline<'_> {
             lines => Serde(&said.below()),
             overview => OVERVIEW,
             pictures => Serde(&pictures),
-            caption => self.pictures_caption(shown),
+            caption => shown.and_then(|shown| self.pictures_caption(shown)),
             glossary => Serde(&glossary::parts()),
             study => Serde(&self.study.file.study),
             stills => Serde(&stills),
@@ -92,6 +92,7 @@ impl Pipeline<'_> {
             viewer => viewer.name(),
             objects => Serde(&self.study.file.objects),
             turntable => Serde(&self.study.file.turntable),
+            shown => Serde(&self.shown_size()?),
             version => env!("CARGO_PKG_VERSION"),
         })?;
         let methods = self.study.method_ids();
@@ -134,6 +135,9 @@ impl Pipeline<'_> {
 
     /// Those that were made.
     fn turntable_cards(&self) -> Vec<Card> {
+        if self.study.shows_films() {
+            return Vec::new();
+        }
         let (codes, _) = self.study.code_names();
         let card = |(configuration, code): (&Configuration, String)| {
             (!self.has_failed(&configuration.id)).then(|| Card {
@@ -177,7 +181,7 @@ impl Pipeline<'_> {
                 object: self.study.file.objects[comparison.object].id.clone(),
                 title: self.pair_in_words(comparison, votes.get(&comparison.question)),
                 ids: format!("{} | {}", comparison.left, comparison.right),
-                file: format!("stimuli/pairs/{code}.gif"),
+                file: format!("stimuli/pairs/{code}.{}", self.pair_ending()),
             })
         };
         self.study.comparisons.iter().zip(codes).filter_map(card).collect()
