@@ -129,6 +129,8 @@ pub(crate) struct Trials<'a> {
     study: &'a Study,
     fields: Fields<'a>,
     repeats: usize,
+    /// Whether measuring is tried too, which takes seconds for each object.
+    measures: bool,
     /// By the place of an object, and a method.
     known: Vec<(usize, Method, Tried)>,
     /// Seconds to measure any mesh, and for each byte of it, for each object of which one was.
@@ -137,7 +139,13 @@ pub(crate) struct Trials<'a> {
 
 impl<'a> Trials<'a> {
     pub(crate) fn new(study: &'a Study) -> Self {
-        Self { study, fields: Fields::new(study), repeats: 1, known: Vec::new(), measured: BTreeMap::new() }
+        let fields = Fields::new(study);
+        Self { study, fields, repeats: 1, measures: true, known: Vec::new(), measured: BTreeMap::new() }
+    }
+
+    /// Those of extractions alone: [`Cost::measuring_s`] is 0.
+    pub(crate) fn of_extractions(study: &'a Study) -> Self {
+        Self { measures: false, ..Self::new(study) }
     }
 
     /// What a mesh of a configuration at a spacing takes; `None` of what is no extractor of ours.
@@ -192,7 +200,7 @@ impl<'a> Trials<'a> {
             }
             found[2] = (24 * mesh.positions.len() + 12 * mesh.triangles.len()) as f64;
             // Most of what measuring costs is the field's, so one mesh stands for those of all methods.
-            if is_first {
+            if is_first && self.measures {
                 let began = Instant::now();
                 let of = isostudy_extract::accuracy(&mesh, field, made.isovalue, &grid, &execution);
                 found[1] = if of.is_ok() { began.elapsed().as_secs_f64() } else { 0.0 };

@@ -27,7 +27,7 @@ impl Pipeline<'_> {
     /// # Errors
     /// If a recipe or a field cannot be made.
     pub(super) fn round_cost(&self, configurations: &[&Configuration]) -> Result<RoundCost> {
-        let mut trials = Trials::new(self.study);
+        let mut trials = Trials::of_extractions(self.study);
         let mut cost = RoundCost { seconds: 0.0, untried: 0 };
         for &configuration in configurations {
             let (purpose, object) = (Purpose::Benchmark, self.study.object(configuration));
