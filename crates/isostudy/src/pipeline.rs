@@ -142,9 +142,7 @@ impl<'a> Pipeline<'a> {
     /// The whole of a study that shows files: what is shown, the forms, and what was answered.
     fn study_of_files(&self) -> Result<Vec<String>> {
         let Shown { meshes, turntables, pairs } = self.shown()?;
-        if !self.study.shows_films() {
-            self.finished_videos(&pairs)?;
-        }
+        self.finished_videos(&pairs)?;
         let forms: Vec<Stamp> = self.forms()?.into_iter().collect();
         let tables = self.tables_of_answers()?;
         let made = [turntables, pairs, forms, vec![tables]].concat();

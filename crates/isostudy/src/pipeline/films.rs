@@ -55,7 +55,7 @@ impl Pipeline<'_> {
     /// Reads every film once, and holds that any two go side by side.
     pub(super) fn films(&self) -> Result<Stamp> {
         let all = &self.study.configurations;
-        let step = Step::begin("films", all.len(), all.len());
+        let step = Step::begin("films", 1, all.len());
         let mut inputs = Inputs::of_sources(source_digests::PICTURES)
             .value("duration", &self.study.file.stimuli.duration_s);
         for (file, digest) in shown_files::digests(self.study)? {
@@ -156,7 +156,7 @@ impl Pipeline<'_> {
             return Ok(Web { stamps: pairs.to_vec(), kinds: vec![(as_it_is, frames)] });
         };
         let stimuli = self.study.stimuli();
-        let step = Step::begin("web", stimuli.len(), stimuli.len());
+        let step = Step::begin("web", 1, stimuli.len());
         let mut inputs =
             Inputs::of_sources(source_digests::PICTURES).value("kind", &kind).value("room", &room);
         for pair in pairs {

@@ -8,7 +8,7 @@ use crate::prepare::Wanted;
 use crate::store::{Inputs, Stamp};
 use crate::terminal::progress::Step;
 use crate::{error_colours, source_digests, video};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use isostudy_design::config::{Look, StillSection};
 use isostudy_design::forms::Stimulus;
 use isostudy_design::record::Purpose;
@@ -140,6 +140,12 @@ impl Pipeline<'_> {
 
     /// Every pair as a video beside it.
     pub(crate) fn videos(&self, pairs: &[Stamp]) -> Result<Vec<Stamp>> {
+        if self.study.shows_films() {
+            bail!(
+                "{}: the study shows films; `isostudy bundle` makes videos of them",
+                self.study.path.display()
+            );
+        }
         let step = Step::begin("videos", pairs.len(), pairs.len());
         let one = |pair: &Stamp| {
             let (name, path, inputs) = Self::video(pair);
@@ -159,6 +165,8 @@ impl Pipeline<'_> {
     /// The videos that are there and show what the pairs do; nothing is made. Others go: their names may be those of other
     /// pairs by now.
     pub(crate) fn finished_videos(&self, pairs: &[Stamp]) -> Result<Vec<Stamp>> {
+        // Those of films are made with the bundle.
+        let pairs = if self.study.shows_films() { &[] } else { pairs };
         let found = |pair: &Stamp| {
             let (name, _, inputs) = Self::video(pair);
             self.store.peek(&name, inputs)
