@@ -174,7 +174,7 @@ fn still_pictures_are_shown_as_they_are_and_their_answers_analysed() {
     let report = folder.read("read/report.md");
     assert!(report.contains("Renderer A"), "{report}");
     let worths = folder.read("read/tables/worths.csv");
-    let davidson: Vec<&str> = worths.lines().filter(|line| line.contains("davidson")).collect();
+    let davidson: Vec<&str> = worths.lines().filter(|line| line.contains(",davidson,")).collect();
     assert_eq!(davidson.len(), 3, "{worths}");
 
     // The same bytes by a run of all, and by jobs.

@@ -123,11 +123,21 @@ fn every_example_is_part_of_a_study() {
         let table = with_example(&section);
         match section.table.as_str() {
             "cpu" => drop(table.try_into::<CpuProfile>().unwrap()),
-            // Of answers without a study.
-            "responses.pairs" => drop(table.try_into::<StudyFile>().unwrap()),
+            // Of answers without a study, and of a study without meshes.
+            "responses.pairs" | "stimuli.files" => drop(table.try_into::<StudyFile>().unwrap()),
             name => drop(folder.parse(&table).unwrap_or_else(|error| panic!("[{name}]: {error}"))),
         }
     }
+}
+
+/// The questionnaire's page has a whole study of files.
+#[test]
+fn the_study_of_files_is_whole() {
+    let page = std::fs::read_to_string("../../docs/questionnaire.md").unwrap();
+    let (_, section) = page.split_once("### Stimuli of your own").unwrap();
+    let text = section.split("```").find_map(|block| block.strip_prefix("toml\n")).unwrap();
+    let study = Study::parse(text, Path::new("study.toml")).unwrap();
+    assert!(study.shows_films() && study.configurations.len() == 2);
 }
 
 /// The folder of a study, with what the examples name.
