@@ -149,6 +149,8 @@ fn answers(folder: &Folder) -> String {
 #[test]
 fn still_pictures_are_shown_as_they_are_and_their_answers_analysed() {
     let folder = study("png", |of| film(of, 1).to_png().unwrap());
+    let valid = run(&folder, &["validate", "study.toml"]).stdout;
+    assert!(valid.contains("street_c  Street, Renderer C, street_c.png\n"), "{valid}");
     run(&folder, &["bundle", "study.toml", "--out", "out", "--with-faults"]);
     let pairs = shown(&folder);
     // Both ways round, and none with itself.
@@ -172,7 +174,8 @@ fn still_pictures_are_shown_as_they_are_and_their_answers_analysed() {
     let csv = answers(&folder);
     run(&folder, &["analyse", "study.toml", "--responses", &csv, "--out", "read"]);
     let report = folder.read("read/report.md");
-    assert!(report.contains("Renderer A"), "{report}");
+    assert!(report.contains("**Compared:** 3 methods on 2 objects (Room and Street)."), "{report}");
+    assert!(!report.contains("isosurface"), "{report}");
     let worths = folder.read("read/tables/worths.csv");
     let davidson: Vec<&str> = worths.lines().filter(|line| line.contains(",davidson,")).collect();
     assert_eq!(davidson.len(), 3, "{worths}");

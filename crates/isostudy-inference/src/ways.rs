@@ -100,7 +100,7 @@ fn steps(group: &BallotGroup, (model, link): (WayModel, Link)) -> OfGroup<'_> {
     }
 }
 
-/// Worths drawn together, of every group: right also where earlier answers decided which pairs were asked.
+/// Worths drawn together, of every group: for answers to pairs that earlier answers chose.
 pub fn of_adaptive(groups: &[BallotGroup]) -> Vec<OfGroup<'_>> {
     let one = |group| {
         let group: &BallotGroup = group;

@@ -156,15 +156,8 @@ impl Animation {
     pub fn in_a_row(all: &[Animation]) -> Result<Option<Animation>, AnimationError> {
         let Some((first, others)) = all.split_first() else { return Ok(None) };
         others.iter().try_for_each(|other| first.check_pairs_with(other))?;
-        let width = first.width as usize;
-        let frame = |number: usize| {
-            let mut row = Vec::with_capacity(all.len() * first.frames[number].len());
-            for y in 0..first.height as usize {
-                all.iter().for_each(|one| row.extend_from_slice(&one.frames[number][y * width..][..width]));
-            }
-            row
-        };
-        let frames = (0..first.frames.len()).into_par_iter().map(frame).collect();
+        let frames: Vec<&[Vec<u8>]> = all.iter().map(|one| &one.frames[..]).collect();
+        let frames = frames_in_a_row(&frames, first.width as usize);
         let width = first.width * all.len() as u32;
         Ok(Some(Animation { width, frames, palette: first.palette.clone(), ..*first }))
     }
@@ -237,6 +230,19 @@ impl Animation {
             }
         }
     }
+}
+
+/// Frame by frame what several show, side by side from left to right. A row of each has `row_bytes`; all have as many rows and frames.
+pub(crate) fn frames_in_a_row(all: &[&[Vec<u8>]], row_bytes: usize) -> Vec<Vec<u8>> {
+    let frame = |number: usize| {
+        let bytes = all[0][number].len();
+        let mut joined = Vec::with_capacity(all.len() * bytes);
+        for from in (0..bytes).step_by(row_bytes) {
+            all.iter().for_each(|frames| joined.extend_from_slice(&frames[number][from..][..row_bytes]));
+        }
+        joined
+    };
+    (0..all[0].len()).into_par_iter().map(frame).collect()
 }
 
 fn packed([r, g, b]: [u8; 3]) -> u64 {

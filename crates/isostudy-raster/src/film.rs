@@ -1,6 +1,7 @@
 //! Pictures and films from files of one's own, in full colour, and rows of them.
 
 use crate::FilmError;
+use crate::animation::frames_in_a_row;
 use gif::{Encoder, Frame, Repeat};
 use image::codecs::gif::GifDecoder;
 use image::imageops::{self, FilterType};
@@ -68,15 +69,8 @@ impl Film {
     pub fn in_a_row(all: &[Film]) -> Result<Option<Film>, FilmError> {
         let Some((first, others)) = all.split_first() else { return Ok(None) };
         others.iter().try_for_each(|other| first.check_goes_with(other))?;
-        let width = 3 * first.width as usize;
-        let frame = |number: usize| {
-            let mut row = Vec::with_capacity(all.len() * first.frames[number].len());
-            for y in 0..first.height as usize {
-                all.iter().for_each(|one| row.extend_from_slice(&one.frames[number][y * width..][..width]));
-            }
-            row
-        };
-        let frames = (0..first.frames.len()).into_par_iter().map(frame).collect();
+        let frames: Vec<&[Vec<u8>]> = all.iter().map(|one| &one.frames[..]).collect();
+        let frames = frames_in_a_row(&frames, 3 * first.width as usize);
         Ok(Some(Film { width: first.width * all.len() as u32, frames, ..*first }))
     }
 

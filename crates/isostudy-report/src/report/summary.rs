@@ -51,11 +51,10 @@ fn compared(evidence: &Evidence<'_>) -> String {
     };
     let objects: Vec<&str> = study.file.objects.iter().map(|object| object.name.as_str()).collect();
     let on = format!("{} ({})", counted(objects.len(), "object"), named(&objects));
-    let methods = match study.methods.len() {
-        1 => "1 method of isosurface extraction".into(),
-        n => format!("{n} methods of isosurface extraction"),
-    };
-    format!("{methods} on {on}. They are {}.", which(study))
+    // Files of a study's own may show anything.
+    let kind = if study.shown_files().is_some() { "" } else { " of isosurface extraction" };
+    let methods = counted(study.methods.len(), "method");
+    format!("{methods}{kind} on {on}. They are {}.", which(study))
 }
 
 /// The methods in words: crossed factors by their levels, others by their labels.

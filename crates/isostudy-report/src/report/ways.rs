@@ -19,9 +19,9 @@ pub(super) fn asked(study: &Study) -> Option<String> {
     let forms = study.file.forms.as_ref()?;
     if forms.adaptive {
         return Some(
-            "Answers that were there before decided half of what each person was asked. Then intervals of the likelihood alone are too \
-             narrow: of such at 95 %, 89 to 94 % hold the truth. The model of worths drawn together is made for it. The tests \
-             of contrasts reject in 4 to 9 % where 5 % are meant."
+            "Answers that were there before decided half of what each person was asked. Intervals of the likelihood alone are then too \
+             narrow: in simulated studies of 36 items, those at 95 % held 89 to 94 % of the true differences. The model of worths \
+             drawn together is made for such answers. Nobody has measured how often the tests of contrasts are mistaken then."
                 .into(),
         );
     }

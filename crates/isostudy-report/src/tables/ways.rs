@@ -46,6 +46,6 @@ pub(crate) fn ways(found: &[OfGroup<'_>], pairs: &[GroupModel<'_>]) -> Table {
         "Ratings: in steps of the scale, less the mean of the object. First choice: in log-odds, on the scale of pairs. Adjacent steps: in \
          log-odds, on the scale of pairs. Cumulative steps: in log-odds on a scale of its own: compare orders. SE, \
          from and to: participants as clusters, t interval at 95 %. Log worth of pairs: Davidson's model of the same answers as \
-         left, none or right. Drawn together: in log-odds, on the scale of pairs; right also where earlier answers chose pairs.",
+         left, none or right. Drawn together: in log-odds, on the scale of pairs; for answers to pairs that earlier answers chose.",
     )
 }

@@ -627,3 +627,51 @@ impl Journal {
         }
     }
 }
+
+/// What was chosen for somebody outlives the server, and is gone with the person. Nothing is chosen again for who is there.
+#[test]
+fn what_was_chosen_stays_with_the_person_and_goes_with_the_person() {
+    let folder = tempdir().unwrap();
+    let open = || Journal::open(folder.path(), &file(1), "d", Loss::Refuse).unwrap();
+    // As many have begun as its words say.
+    let chooser = || {
+        let choose = |others: &[Asked<'_>], planned: &FormEntry, before: usize| {
+            let answered: usize = others.iter().map(|(_, choices)| choices.len()).sum();
+            let questions = ["x", "y", "z"].map(|letter| format!("{letter}{before}{answered}")).into();
+            FormEntry { questions, ..planned.clone() }
+        };
+        Chooser(Arc::new(choose))
+    };
+    let mut journal = open();
+    journal.choose_by(chooser());
+    let first = journal.begin(nobody(), 1).unwrap();
+    assert_eq!(
+        (&first.form.questions[..], &first.form.training[..]),
+        (&["x00", "y00", "z00"].map(String::from)[..], &["tani".to_owned()][..])
+    );
+    // What the form plans is no question of this person.
+    let planned = answer(2, "a1", Choice::L);
+    assert_eq!(journal.answer(&first.token, &planned, 2).unwrap(), Err(Refusal::OtherStimulus(2)));
+    first_answer(&mut journal, &first, 2);
+    let second = journal.begin(nobody(), 3).unwrap();
+    assert_eq!(second.form.questions[0], "x11");
+    first_answer(&mut journal, &second, 4);
+    drop(journal);
+
+    let mut journal = open();
+    assert_eq!(journal.state(&first.token).unwrap().form, first.form);
+    assert_eq!(journal.state(&second.token).unwrap().form, second.form);
+    let next = answer(3, "y00", Choice::Np);
+    assert_eq!(journal.answer(&first.token, &next, 5).unwrap(), Ok(()));
+    assert_eq!(journal.withdraw(&first.token[..16]).unwrap(), Ok(()));
+    let left: Vec<String> = journal
+        .answers
+        .prepare("SELECT questions FROM chosen")
+        .unwrap()
+        .query_map([], |row| row.get(0))
+        .unwrap()
+        .collect::<rusqlite::Result<_>>()
+        .unwrap();
+    assert_eq!(left, [r#"["x11","y11","z11"]"#]);
+    assert_eq!(journal.state(&second.token).unwrap().form, second.form);
+}

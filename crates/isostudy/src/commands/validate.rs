@@ -27,6 +27,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let study = checked_study::load(path)?;
     for configuration in &study.configurations {
         let object = study.object(configuration);
+        if let Some(shown) = study.file.stimuli.file_of(&configuration.id) {
+            let label = &study.method(configuration.id.method).label;
+            let line = format!("{}  {}, {label}, {}", configuration.id, object.name, shown.file);
+            say(&shown_in_a_line(&line))?;
+            continue;
+        }
         let grid = prepare::grid(object, object.benchmark_spacing);
         let [x, y, z] = match recipe::recipe(&study, configuration.id.method, Purpose::Benchmark)? {
             Recipe::Extractor(method) => method.cells(&grid)?,
