@@ -6,12 +6,13 @@
 mod ground;
 
 use std::hint::black_box;
+use std::sync::Mutex;
 use std::time::Instant;
 
 use ground::{Ground, Hole};
 use isostudy_extract::{
-    Arrangement, CellBox, Chunk, ChunkExtractor, ChunkSettings, Control, Grid, Method, Normals, Placement,
-    ScalarField, Source, Tetrahedra, from_fn, presets,
+    Aabb, Arrangement, Bound, CellBox, Chunk, ChunkExtractor, ChunkSettings, Control, Grid, Method, Normals,
+    Placement, ScalarField, Source, Tetrahedra, from_fn, presets,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -111,6 +112,29 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             });
         }
     }
+    // What of that are calls of the field.
+    for preset in ["mc", "nets", "dc"] {
+        let method = presets().iter().find(|of| of.id == preset).ok_or("a preset")?.method;
+        let counted = Counted { ground: &ground, points: Mutex::default() };
+        let mut extractor = ChunkExtractor::try_new(&grid, &method, &ChunkSettings::default())?;
+        let mut chunk = Chunk::default();
+        let mut vertices = 0;
+        for id in ids() {
+            extractor.extract_into(&counted, grid.chunk(id, 32), Control::default(), &mut chunk)?;
+            vertices += chunk.positions.len();
+        }
+        let points = counted.points.into_inner()?;
+        let start = Instant::now();
+        points.iter().for_each(|p| _ = black_box(ground.sample(*p)));
+        let ms = start.elapsed().as_secs_f64() * 1e3;
+        let of_each = |sum: f64| sum / ids().count() as f64;
+        println!(
+            "{preset}: per chunk {} vertices, {} values of the field, which take {:.2} ms alone",
+            of_each(vertices as f64),
+            of_each(points.len() as f64),
+            of_each(ms)
+        );
+    }
     // What no method can do without that takes every sample.
     let method = Method::Tetrahedra(Tetrahedra::new(Arrangement::SimpleCubic));
     let extractor = ChunkExtractor::try_new(&grid, &method, &ChunkSettings::default())?;
@@ -120,6 +144,23 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         layout.map(|layout| layout.fill(&ground, &mut samples)).is_ok()
     });
     Ok(())
+}
+
+/// The ground, with every point that is asked for.
+struct Counted<'a> {
+    ground: &'a Ground,
+    points: Mutex<Vec<[f32; 3]>>,
+}
+
+impl ScalarField for Counted<'_> {
+    fn sample(&self, p: [f32; 3]) -> f32 {
+        self.points.lock().expect("no thread panics").push(p);
+        self.ground.sample(p)
+    }
+
+    fn bound(&self, bounds: Aabb) -> Bound {
+        self.ground.bound(bounds)
+    }
 }
 
 fn timed<T>(what: &str, items: impl Iterator<Item = T>, mut work: impl FnMut(T) -> bool) {

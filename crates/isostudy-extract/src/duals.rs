@@ -29,12 +29,12 @@ pub(crate) use relaxed::MOST_SMOOTHING;
 pub(crate) use sharp::Sharp;
 pub(crate) use tangents::{Tangent, tangent};
 
-use std::collections::{HashMap, TryReserveError};
+use std::collections::TryReserveError;
 use std::ops::Range;
 
 use self::plan::{Plans, Table};
 use self::quads::QuadPass;
-use self::tangents::{Known, Tangents};
+use self::tangents::{Known, Layer, Tangents};
 use self::vertices::{Record, VertexPass};
 use crate::cubes::Kept;
 use crate::cubes::grid::SLOTS;
@@ -226,7 +226,7 @@ impl Net<'_> {
         let pass =
             VertexPass { grid, samples, values, placer, in_middle, part, has_normals: self.has_normals };
         if layer == lowest_numbered(&slab.own) {
-            tangents.iter_mut().for_each(HashMap::clear);
+            tangents.iter_mut().for_each(Layer::clear);
         }
         let mut tangents = by_planes.map(|(sharp, level)| (sharp, Tangents::new(level, tangents, layer)));
         let by_planes = tangents.as_mut().map(|(sharp, tangents)| (*sharp, tangents));

@@ -99,17 +99,32 @@ fn eigen(mut a: DMat3) -> (DVec3, DMat3) {
                 continue;
             }
             let theta = (a.col(q)[q] - a.col(p)[p]) / (2.0 * apq);
-            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let c = 1.0 / t.hypot(1.0);
+            // A square that overflows turns by nothing, as it should.
+            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let c = 1.0 / (t * t + 1.0).sqrt();
             let s = t * c;
-            let mut turn = DMat3::IDENTITY;
-            (turn.col_mut(p)[p], turn.col_mut(q)[q]) = (c, c);
-            (turn.col_mut(q)[p], turn.col_mut(p)[q]) = (s, -s);
-            a = turn.transpose() * a * turn;
-            vectors *= turn;
+            // Rows and columns p and q turn by the angle; products with zeros and ones are left out.
+            turn_rows(&mut a, p, q, c, s);
+            turn_columns(&mut a, p, q, c, s);
+            turn_columns(&mut vectors, p, q, c, s);
         }
     }
     (DVec3::new(a.col(0)[0], a.col(1)[1], a.col(2)[2]), vectors)
+}
+
+/// The matrix by a rotation in the plane of two axes, from the right.
+fn turn_columns(of: &mut DMat3, p: usize, q: usize, c: f64, s: f64) {
+    let (at_p, at_q) = (of.col(p), of.col(q));
+    *of.col_mut(p) = at_p * c - at_q * s;
+    *of.col_mut(q) = at_p * s + at_q * c;
+}
+
+/// The matrix by the inverse of the rotation, from the left.
+fn turn_rows(of: &mut DMat3, p: usize, q: usize, c: f64, s: f64) {
+    for column in 0..3 {
+        let column = of.col_mut(column);
+        (column[p], column[q]) = (c * column[p] - s * column[q], s * column[p] + c * column[q]);
+    }
 }
 
 #[cfg(test)]

@@ -37,8 +37,12 @@ impl Level<'_> {
     /// The gradient by central differences. `difference` is the one at `p`; it only makes the search of a distance
     /// shorter.
     pub(crate) fn gradient(&self, p: Vec3, difference: f32) -> DVec3 {
+        self.gradient_after(p, Some((p, difference + self.isovalue)))
+    }
+
+    /// The same, where the value at a point nearby may be known.
+    fn gradient_after(&self, p: Vec3, near: Option<(Vec3, f32)>) -> DVec3 {
         let step = self.spacing * STENCIL;
-        let near = Some((p, difference + self.isovalue));
         // By axis, the lower point first.
         let points: [Vec3; 6] = std::array::from_fn(|i| {
             let mut there = p;
@@ -135,14 +139,23 @@ impl Level<'_> {
 
     /// The outward direction at `p`, as the field has it or else as samples nearby have it. `None` where there is none.
     pub(crate) fn normal(&self, p: Vec3) -> Option<Vec3> {
+        self.normal_after(p, None)
+    }
+
+    /// The same, where the value at a point nearby may be known.
+    pub(crate) fn normal_after(&self, p: Vec3, near: Option<(Vec3, f32)>) -> Option<Vec3> {
         match self.field.gradient(p) {
             Some(gradient) => (-gradient).try_normalize(),
-            None => Some(self.outward(p)?.as_vec3()),
+            None => Some(self.outward_after(p, near)?.as_vec3()),
         }
     }
 
     /// The outward direction at `p`: against the gradient, since inside is above. `None` where there is no gradient.
     pub(crate) fn outward(&self, p: Vec3) -> Option<DVec3> {
-        (-self.gradient(p, self.difference(p))).try_normalize()
+        self.outward_after(p, None)
+    }
+
+    fn outward_after(&self, p: Vec3, near: Option<(Vec3, f32)>) -> Option<DVec3> {
+        (-self.gradient_after(p, near)).try_normalize()
     }
 }
