@@ -450,10 +450,11 @@ impl BenchSample {
 }
 
 /// What the measuring process used for one extraction, over all its threads, beside time. `None` is not told: by the system, or
-/// of a program that is not ours.
+/// of a program that is not ours, which has CPU time alone.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Counters {
-    /// Seconds of CPU time. Less than the time times the threads is time in which threads waited.
+    /// Seconds of CPU time. Less than the time times the threads is time in which threads waited. Of a program that is not ours, its own
+    /// and that of all that it started, as long as `outside_s`: its reading of samples is in it.
     pub cpu_s: Option<f64>,
     /// Pages that had to be mapped or read.
     pub page_faults: Option<u64>,

@@ -167,6 +167,12 @@ impl Child {
         self.group.memory(search_now)
     }
 
+    /// CPU time of it and all that it started, since it began; `None` where it cannot be seen. What ended without being waited for is
+    /// not in it.
+    pub fn cpu(&mut self) -> Option<Duration> {
+        self.group.cpu()
+    }
+
     /// Whether that is within the limit.
     ///
     /// # Errors

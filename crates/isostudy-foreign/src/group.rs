@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
 
 use crate::interrupt;
-use crate::processes::{Family, resident_and_peak};
+use crate::processes::{Family, cpu_time, resident_and_peak};
 use crate::wrapper;
 
 /// How often all processes are searched for members of the group, at the most.
@@ -115,12 +115,28 @@ impl Group {
         }
     }
 
-    /// What the group has, from `/proc`. The first process is looked at each time, others are searched for about
-    /// once a second, or now.
+    /// What the group has, from `/proc`.
     ///
     /// A limit on the address space (`RLIMIT_AS`) was not taken: Python and its libraries reserve many times of what they use, and it
     /// holds for each process by itself.
     pub(crate) fn memory(&mut self, search_now: bool) -> Option<Memory> {
+        let found: Vec<_> = self.alive(search_now).filter_map(resident_and_peak).collect();
+        if found.is_empty() {
+            return None;
+        }
+        let resident_bytes = found.iter().map(|[resident, _]| resident).sum();
+        let peak = found.iter().map(|[_, peak]| *peak).fold(resident_bytes, u64::max);
+        self.peak_bytes = self.peak_bytes.max(peak);
+        Some(Memory { resident_bytes, peak_bytes: self.peak_bytes })
+    }
+
+    /// CPU time of the group since it began: of those that are alive, all threads, and of those that they waited for.
+    pub(crate) fn cpu(&mut self) -> Option<Duration> {
+        self.alive(true).map(cpu_time).sum()
+    }
+
+    /// The first process, which may have ended, and the others, which are searched for about once a second, or now.
+    fn alive(&mut self, search_now: bool) -> impl Iterator<Item = Pid> {
         let first = self.family.first;
         let begin = Instant::now();
         if search_now || self.next_search.is_none_or(|at| begin >= at) {
@@ -131,14 +147,7 @@ impl Group {
         }
         // A member may have ended and its number gone to a stranger.
         let others = self.members.iter().copied().filter(|&member| self.family.has(member));
-        let found: Vec<_> = [first].into_iter().chain(others).filter_map(resident_and_peak).collect();
-        if found.is_empty() {
-            return None;
-        }
-        let resident_bytes = found.iter().map(|[resident, _]| resident).sum();
-        let peak = found.iter().map(|[_, peak]| *peak).fold(resident_bytes, u64::max);
-        self.peak_bytes = self.peak_bytes.max(peak);
-        Some(Memory { resident_bytes, peak_bytes: self.peak_bytes })
+        [first].into_iter().chain(others)
     }
 }
 

@@ -109,9 +109,50 @@ pub(crate) fn resident_and_peak(process: Pid) -> Option<[u64; 2]> {
     Some([bytes("VmRSS:")?, bytes("VmHWM:")?])
 }
 
+/// CPU time of a process since it began, of all its threads, those that have ended too; and of the processes that it waited for.
+///
+/// The kernel keeps the first to the nanosecond. The second is what `wait4` told it, in hundredths of a second.
+#[cfg(target_os = "linux")]
+pub(crate) fn cpu_time(process: Pid) -> Option<Duration> {
+    let clock =
+        nix::time::clock_getcpuclockid(nix::unistd::Pid::from_raw(process.as_raw_nonzero().get())).ok()?;
+    let own = Duration::from(clock.now().ok()?);
+    let stat = read(process, "stat", 4096)?;
+    let ticks = waited_for_ticks(&String::from_utf8_lossy(&stat))?;
+    let per_second = rustix::param::clock_ticks_per_second();
+    Some(own + Duration::from_secs_f64(ticks as f64 / per_second as f64))
+}
+
+/// No other system tells it.
+#[cfg(not(target_os = "linux"))]
+pub(crate) fn cpu_time(_process: Pid) -> Option<Duration> {
+    None
+}
+
+/// Fields 16 and 17, user and system time of children that were waited for. The name, which may hold anything, comes before.
+#[cfg(any(target_os = "linux", test))]
+fn waited_for_ticks(stat: &str) -> Option<u64> {
+    let mut fields = stat[stat.rfind(')')? + 1..].split_ascii_whitespace().skip(13);
+    let user: u64 = fields.next()?.parse().ok()?;
+    let system: u64 = fields.next()?.parse().ok()?;
+    Some(user + system)
+}
+
 fn read(process: Pid, name: &str, limit: u64) -> Option<Vec<u8>> {
     let path: PathBuf = Path::new("/proc").join(process.as_raw_nonzero().to_string()).join(name);
     let mut bytes = Vec::new();
     File::open(path).ok()?.take(limit).read_to_end(&mut bytes).ok()?;
     Some(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_of_children_are_read() {
+        let stat = "4242 (a) b (c)) S 1 4242 4242 0 -1 4194560 100 2000 3 40 700 30 5 6 20 0 1 0 12345";
+        assert_eq!(waited_for_ticks(stat), Some(11));
+        assert_eq!(waited_for_ticks("4242 (short) S 1 2"), None);
+    }
 }

@@ -33,6 +33,8 @@ pub struct Answer {
     pub peak_bytes: Option<u64>,
     /// From the request's last byte to the answer's, by our clock: reading samples and writing the mesh are in it.
     pub wall: Duration,
+    /// CPU time of the program and all that it started, over the same time: all threads. `None` where it is not told.
+    pub cpu: Option<Duration>,
     /// As told; if there is a mesh, as many as it has.
     pub vertices: u64,
     /// As told; if there is a mesh, as many as it has.

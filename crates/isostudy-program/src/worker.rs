@@ -165,7 +165,10 @@ impl Worker {
         let mut line = serde_json::to_vec(&line)
             .map_err(|error| Problem::Request { key: "samples, mesh", reason: error.to_string() })?;
         line.push(b'\n');
+        let before = self.child.cpu();
         let (done, wall) = self.answered(line, id)?;
+        // A process that ended in between takes its time along, unless it was waited for.
+        let cpu = before.zip(self.child.cpu()).and_then(|(before, after)| after.checked_sub(before));
         let memory = self.child.memory(true);
         self.child.check_memory(memory).map_err(|stopped| self.stopped(stopped, Phase::Request(id)))?;
         if done.triangles == 0 && !request.may_be_empty {
@@ -174,7 +177,7 @@ impl Worker {
         let limit = self.program.memory_limit_bytes;
         let mesh = mesh.map(|path| mesh_file::read(&path, request, &done, limit)).transpose()?;
         let Done { extraction_s, callback_s, peak_bytes, vertices, triangles, .. } = done;
-        Ok(Answer { extraction_s, callback_s, peak_bytes, wall, vertices, triangles, mesh, memory })
+        Ok(Answer { extraction_s, callback_s, peak_bytes, wall, cpu, vertices, triangles, mesh, memory })
     }
 
     fn answered(&mut self, line: Vec<u8>, id: u64) -> Result<(Done, Duration), Problem> {

@@ -88,7 +88,11 @@ impl Measured for Clock<'_> {
                 let geometry_s = answer.extraction_s.unwrap_or(answer.wall.as_secs_f64());
                 let finishing_s = finishing_s(&prepared, || self.mesh(number, &prepared, program))?;
                 let stages = StageSeconds { sampling_s, geometry_s, finishing_s, ..StageSeconds::default() };
-                let counters = Counters { outside_s: Some(answer.wall.as_secs_f64()), ..Counters::default() };
+                let counters = Counters {
+                    cpu_s: answer.cpu.map(|cpu| cpu.as_secs_f64()),
+                    outside_s: Some(answer.wall.as_secs_f64()),
+                    ..Counters::default()
+                };
                 Ok(Timed { stages, counters })
             }
             Recipe::Family(family) => {

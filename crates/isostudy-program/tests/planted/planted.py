@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 PLAN = sys.argv[1]
@@ -28,6 +29,13 @@ def take(megabytes):
     for place in range(0, len(taken), 4096):
         taken[place] = 1
     return taken
+
+
+def work(seconds):
+    """So many seconds of this process's CPU time."""
+    begin = time.process_time()
+    while time.process_time() - begin < seconds:
+        pass
 
 
 def write_mesh(path, rows=("0 0 0", "1 0 0", "0 1 0"), corners="0 1 2"):
@@ -77,6 +85,17 @@ def answer(request):
         os._exit(3)
     elif PLAN == "signal":
         os.kill(os.getpid(), signal.SIGSEGV)
+    elif PLAN == "busy":
+        # In a thread that ends, in nobody, in a process that ends.
+        if request["id"] == 1:
+            thread = threading.Thread(target=work, args=(0.3,))
+            thread.start()
+            thread.join()
+        elif request["id"] == 2:
+            time.sleep(0.3)
+        else:
+            busy = "import time\nwhile time.process_time() < 0.3: pass"
+            subprocess.run([sys.executable, "-c", busy], check=True)
     elif PLAN == "linger":
         linger()
     elif PLAN == "linger-and-crash":

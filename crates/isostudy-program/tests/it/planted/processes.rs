@@ -33,6 +33,16 @@ fn a_dropped_worker_takes_its_processes_and_its_folder_along() {
     assert!(!folder.exists());
 }
 
+/// Threads and processes that have ended count, and waiting does not. Other work on the machine adds nothing to CPU time.
+#[test]
+fn its_cpu_time_is_that_of_its_threads_and_processes() {
+    let mut worker = Worker::start(&planted("busy")).expect("it is ready");
+    for (who, least, most) in [("a thread", 0.3, 0.6), ("nobody", 0.0, 0.1), ("a process", 0.28, 0.9)] {
+        let cpu = ask(&mut worker).expect("an answer").cpu.expect("this system tells it").as_secs_f64();
+        assert!((least..most).contains(&cpu), "{who}: {cpu}");
+    }
+}
+
 #[test]
 fn a_crash_is_seen_though_something_holds_the_output_open() {
     let (error, worker) = first_error(&planted("linger-and-crash"));
