@@ -14,7 +14,7 @@ if ! "$python" -m venv "$target/build" || ! "$target/build/bin/pip" install --qu
 fi
 CARGO_TARGET_DIR=$target/cargo "$target/build/bin/maturin" build --release --quiet --manifest-path python/Cargo.toml --out target/wheels
 "$python" -m venv "$target/fresh"
-"$target/fresh/bin/pip" install --quiet target/wheels/*.whl matplotlib
+"$target/fresh/bin/pip" install --quiet target/wheels/*.whl matplotlib pandas polars pyarrow
 # Elsewhere, so that the package that is found is the one that was installed.
 cd "$target/scratch"
 "$target/fresh/bin/python" -m unittest discover --start-directory ../../../python/tests --pattern 'test_*.py'

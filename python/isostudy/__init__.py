@@ -1,4 +1,4 @@
-"""Isosurfaces of NumPy arrays, and what their meshes are worth.
+"""Isosurfaces of NumPy arrays, what their meshes are worth, and what people say of them.
 
 >>> import numpy as np, isostudy
 >>> x, y, z = np.meshgrid(*3 * [np.linspace(-1.2, 1.2, 49, dtype=np.float32)], indexing="ij")
@@ -8,18 +8,22 @@ True
 >>> isostudy.verify(mesh, 1 - np.sqrt(x * x + y * y + z * z))["is_right"]
 True
 
+``analyse`` reads people's choices between two things each, and says which they liked more.
+
 Inside is a value above the isovalue. Triangles are counter-clockwise seen from outside. The same array, method and
 isovalue give the same bytes, on any number of threads.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from . import _isostudy
 from ._isostudy import __version__
 
-__all__ = ["Mesh", "Method", "extract", "methods", "quality", "topology", "verify", "__version__"]
+__all__ = ["Analysis", "Mesh", "Method", "analyse", "extract", "methods", "quality", "topology", "verify", "__version__"]
 
 
 class Mesh:
@@ -131,3 +135,64 @@ def verify(mesh, array, isovalue=0.0):
     each difference with both numbers. Vertices count by their numbers, not by their places.
     """
     return _isostudy.verify(mesh._native, _samples(array), isovalue)
+
+
+class Analysis(Mapping):
+    """Tables about people's answers, by name: ``analysis["worths"]``.
+
+    Each is a data frame of the library that the answers came in: pandas, polars or pyarrow. From another library it is an object that
+    any library takes by Arrow (``__arrow_c_stream__``). ``found`` says in words what was found. ``read`` says how the frame was read,
+    and names what was not taken as it stands. ``captions`` and ``notes`` have what is printed above and below each table.
+    """
+
+    def __init__(self, found, read, tables, of):
+        self.found, self.read = found, read
+        self.captions = {name: caption for name, caption, _, _ in tables}
+        self.notes = {name: notes for name, _, notes, _ in tables}
+        self._tables = {name: _as(of, table) for name, _, _, table in tables}
+
+    def __getitem__(self, name):
+        return self._tables[name]
+
+    def __iter__(self):
+        return iter(self._tables)
+
+    def __len__(self):
+        return len(self._tables)
+
+    def __repr__(self):
+        return f"<isostudy.Analysis of {', '.join(self)}>"
+
+
+def _as(of, table):
+    """The table as a frame of the library that `of` is of."""
+    library = type(of).__module__.partition(".")[0]
+    if library == "polars":
+        import polars
+
+        return polars.DataFrame(table)
+    if library in ("pandas", "pyarrow"):
+        # pandas gives and takes Arrow by pyarrow.
+        import pyarrow
+
+        return pyarrow.table(table).to_pandas() if library == "pandas" else pyarrow.table(table)
+    return table
+
+
+def analyse(frame, *, reference=None, shown_s=None, many=False):
+    """Factors, tests and worths of answers to paired comparisons, as ``isostudy analyse FILE`` computes them.
+
+    frame: a data frame of pandas (with pyarrow), polars or pyarrow, or whatever has ``__arrow_c_stream__``. A row is an answer:
+        ``participant``, ``question``, ``left``, ``right``, and ``choice``, which is ``left``, ``none`` or ``right``. ``group``,
+        ``object``, ``rt_ms``, ``count`` and others may be given; docs/answers.md lists them. Further columns are passed over.
+    reference: the item whose worth is 0; otherwise the first by name.
+    shown_s: how long a pair must be seen. Faster answers are named.
+    many: count pairs alone, as is done beyond a million answers or a hundred items.
+
+    The same answers give the same numbers, on any number of threads. Other threads of Python run meanwhile.
+
+    Raises TypeError for what is no frame, ValueError for answers that cannot be read.
+    """
+    if not hasattr(frame, "__arrow_c_stream__"):
+        raise TypeError(f"{type(frame).__name__} is no data frame: it has no __arrow_c_stream__")
+    return Analysis(*_isostudy.analyse(frame, reference, shown_s, many), frame)

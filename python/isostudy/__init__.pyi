@@ -1,5 +1,5 @@
-from collections.abc import Sequence
-from typing import TypedDict
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -78,3 +78,14 @@ def extract(
 def quality(mesh: Mesh) -> Quality: ...
 def topology(mesh: Mesh) -> Topology: ...
 def verify(mesh: Mesh, array: npt.ArrayLike, isovalue: float = ...) -> Verdict: ...
+
+class _Frame(Protocol):
+    def __arrow_c_stream__(self, requested_schema: object | None = ...) -> object: ...
+
+class Analysis(Mapping[str, Any]):
+    found: str | None
+    read: str
+    captions: dict[str, str]
+    notes: dict[str, list[str]]
+
+def analyse(frame: _Frame, *, reference: str | None = ..., shown_s: float | None = ..., many: bool = ...) -> Analysis: ...

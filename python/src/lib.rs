@@ -3,6 +3,7 @@
 //! Samples are read where NumPy has them, and meshes are read where Rust has them: neither is copied. Whatever takes long lets other
 //! threads of Python run.
 
+mod answers;
 mod mesh;
 mod samples;
 
@@ -23,6 +24,7 @@ use crate::samples::{Volume, steps};
 fn _isostudy(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Mesh>()?;
     module.add_class::<mesh::Buffer>()?;
+    module.add_function(wrap_pyfunction!(answers::analyse, module)?)?;
     module.add_function(wrap_pyfunction!(extract, module)?)?;
     module.add_function(wrap_pyfunction!(methods, module)?)?;
     module.add_function(wrap_pyfunction!(quality, module)?)?;
