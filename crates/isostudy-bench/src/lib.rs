@@ -54,6 +54,7 @@ mod profile;
 mod reference;
 mod run;
 mod stages;
+mod valgrind;
 mod worker;
 
 pub use ab::{AbEntry, AbMeasured, AbPlan, LEAST_ROUNDS, read_ab_journal, run_ab};
@@ -72,4 +73,5 @@ pub use profile::{MEMORY_ALLOWANCE, ProfileRow, compare_profile, differences};
 pub use reference::Reference;
 pub use run::{Executor, Measurement, PeakBytes, check_journal, run, run_until};
 pub use stages::{StageSeconds, Timed};
+pub use valgrind::instructions;
 pub use worker::{Finish, Measured, Prepared, Reply, Request, serve};

@@ -144,13 +144,14 @@ impl Executor for ProcessExecutor<'_> {
     }
 }
 
-struct Worker {
+/// A process that measures what it is asked to.
+pub(crate) struct Worker {
     child: Child,
     allowance: Allowance,
 }
 
 impl Worker {
-    fn start(
+    pub(crate) fn start(
         mut command: Command,
         tell: Option<Told>,
         allowance: Allowance,
@@ -164,7 +165,14 @@ impl Worker {
         Ok((worker, pinned))
     }
 
-    fn ask(&mut self, request: Request) -> Result<Reply, BenchError> {
+    /// Lets it end, and returns the end of what it said on standard error, if nobody was told.
+    pub(crate) fn finish(mut self) -> String {
+        let _ = self.child.wait(PARTING);
+        self.child.kill();
+        self.child.last_words()
+    }
+
+    pub(crate) fn ask(&mut self, request: Request) -> Result<Reply, BenchError> {
         if let Some(Heard::Line(line, _) | Heard::TooLong(line)) = self.child.unasked() {
             self.child.kill();
             let said = format!("said `{}` without being asked", quoted(&line));

@@ -5,6 +5,9 @@
 //! gives a process stays with it and is in all of its rounds alike. Half of the 5 % that intervals may miss is the mean's over all
 //! configurations, the other half is shared by the configurations (Bonferroni).
 //!
+//! Where a build was linked several times, its code in another order each time, a pair of processes takes the next link of both. Pairs of
+//! processes of one link are one value then, their mean: what the layout of code gives a link stays with it.
+//!
 //! Where the times of all together differ, stages say where: how much of OLD's total each one adds. They have verdicts only then and only
 //! in that direction, so that they are wrong no more often than the total is.
 
@@ -20,7 +23,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
 /// The version of [`AbComparison`] as JSON.
-pub const AB_SCHEMA: u32 = 2;
+pub const AB_SCHEMA: u32 = 3;
 /// The chance that any interval of a quantity misses.
 const MISSES: f64 = 0.05;
 
@@ -64,6 +67,8 @@ pub struct AbComparison {
     pub schema: u32,
     /// Whether both files are the same, byte for byte.
     pub same_program: bool,
+    /// Links of each build.
+    pub links: u32,
     /// Time first, and first of each quantity that of all configurations together.
     pub rows: Vec<AbRow>,
     /// What each stage adds to the time of all configurations together, in the order of the stages.
@@ -111,6 +116,7 @@ pub fn ab(run: &AbRun) -> AbComparison {
     AbComparison {
         schema: AB_SCHEMA,
         same_program: run.old.sha256 == run.new.sha256,
+        links: links(run),
         stages: total.map_or_else(Vec::new, |total| stages(run, total.verdict)),
         rows,
         failed: run.failed.clone(),
@@ -125,7 +131,7 @@ fn stages(run: &AbRun, of_total: Verdict) -> Vec<AbStage> {
     let of = |stage: Stage| {
         let share = |pair: &AbPair| (stage.of(&pair.new) - stage.of(&pair.old)) / pair.old.total_s;
         let (_, means) = by_processes(run, |pair| Some(share(pair)).filter(|share| share.is_finite()))?;
-        let Estimate { mean, half } = Estimate::of(&means, chance);
+        let Estimate { mean, half } = Estimate::of(&independent(run, &means), chance);
         let verdict = match half {
             Some(half) if mean - half > 0.0 && of_total == Verdict::Slower => Verdict::Slower,
             Some(half) if mean + half < 0.0 && of_total == Verdict::Faster => Verdict::Faster,
@@ -137,12 +143,32 @@ fn stages(run: &AbRun, of_total: Verdict) -> Vec<AbStage> {
     stages.into_iter().filter_map(of).collect()
 }
 
+/// Both builds have so many links, or one of them has.
+fn links(run: &AbRun) -> u32 {
+    run.old.links.max(run.new.links).max(1)
+}
+
+/// Values of pairs of processes as values that know nothing of each other: of each link the mean.
+fn independent(run: &AbRun, of_processes: &BTreeMap<u32, f64>) -> Vec<f64> {
+    let mut of_links = BTreeMap::<u32, Vec<f64>>::new();
+    let links = links(run);
+    for (&at, &value) in of_processes {
+        // Where there is one link, each pair of processes is by itself.
+        let link = if links > 1 { at % links } else { at };
+        of_links.entry(link).or_default().push(value);
+    }
+    of_links.values().map(|values| values.iter().sum::<f64>() / values.len() as f64).collect()
+}
+
 /// By configuration and pair of processes, the median over rounds.
 type Medians<'a> = Vec<(&'a ConfigurationId, BTreeMap<u32, f64>)>;
 
 /// The median over rounds of what `of` says of each pair, by configuration and pair of processes; and the means of these over all
 /// configurations, of each pair of processes that has every one. `None` where it says nothing of some pair.
-fn by_processes(run: &AbRun, of: impl Fn(&AbPair) -> Option<f64>) -> Option<(Medians<'_>, Vec<f64>)> {
+fn by_processes(
+    run: &AbRun,
+    of: impl Fn(&AbPair) -> Option<f64>,
+) -> Option<(Medians<'_>, BTreeMap<u32, f64>)> {
     let mut found = BTreeMap::<&ConfigurationId, BTreeMap<u32, Vec<f64>>>::new();
     for pair in &run.pairs {
         found.entry(&pair.old.id).or_default().entry(pair.old.invocation).or_default().push(of(pair)?);
@@ -156,10 +182,10 @@ fn by_processes(run: &AbRun, of: impl Fn(&AbPair) -> Option<f64>) -> Option<(Med
     for (&at, &median) in medians.iter().flat_map(|(_, medians)| medians) {
         sums.entry(at).or_default().push(median);
     }
-    let means: Vec<f64> = sums
-        .values()
-        .filter(|found| found.len() == medians.len())
-        .map(|found| found.iter().sum::<f64>() / found.len() as f64)
+    let means: BTreeMap<u32, f64> = sums
+        .iter()
+        .filter(|(_, found)| found.len() == medians.len())
+        .map(|(&at, found)| (at, found.iter().sum::<f64>() / found.len() as f64))
         .collect();
     (!means.is_empty()).then_some((medians, means))
 }
@@ -195,10 +221,9 @@ fn rows(run: &AbRun, quantity: Quantity) -> Vec<AbRow> {
     let chance = MISSES / 2.0 / medians.len() as f64;
     let pairs = |id: &ConfigurationId| run.pairs.iter().filter(|pair| pair.old.id == *id).count();
     let each = medians.iter().map(|(id, medians)| {
-        let values: Vec<f64> = medians.values().copied().collect();
-        row(quantity, Some((*id).clone()), pairs(id), &values, chance)
+        row(quantity, Some((*id).clone()), pairs(id), &independent(run, medians), chance)
     });
-    let all = row(quantity, None, run.pairs.len(), &means, MISSES / 2.0);
+    let all = row(quantity, None, run.pairs.len(), &independent(run, &means), MISSES / 2.0);
     [all].into_iter().chain(each).collect()
 }
 
@@ -242,10 +267,15 @@ impl AbComparison {
     pub fn brief(&self, run: &AbRun) -> Vec<String> {
         let count = self.of(Quantity::Time).count().saturating_sub(1);
         let mut lines = vec![format!(
-            "NEW against OLD: {} in {} pairs of processes, {} pairs of samples.",
+            "NEW against OLD: {} in {} pairs of processes, {} pairs of samples. {}",
             counted(count, "configuration"),
             run.processes,
-            run.pairs.len()
+            run.pairs.len(),
+            match self.links {
+                1 => "Of each build there is one link: what the layout of its code does is in no interval."
+                    .to_owned(),
+                links => format!("Each build has {links} links: the layout of code is in the intervals."),
+            }
         )];
         if self.same_program {
             lines.push("NEW and OLD are the same program.".into());
@@ -360,7 +390,7 @@ mod tests {
                 }
             }
         }
-        let program = |sha256: &str| AbProgram { path: "isostudy".into(), sha256: sha256.into() };
+        let program = |sha256: &str| AbProgram { path: "isostudy".into(), sha256: sha256.into(), links: 1 };
         AbRun {
             schema: AbRun::SCHEMA,
             study: "made up".into(),
@@ -473,6 +503,30 @@ mod tests {
         assert!(
             better.regressions(Quantity::Time, 0.0).is_empty() && better.rows[0].verdict == Verdict::Faster
         );
+    }
+
+    /// Two links, each in two pairs of processes: their means are .02 and .04, and `qt(0.9875, 1)` is 25.4517.
+    #[test]
+    fn processes_of_one_link_are_one_value() {
+        let medians = [0.01, 0.03, 0.03, 0.05];
+        let mut made = run(&["ss_bi"], 4, 3, |_, at, _| medians[at as usize]);
+        (made.old.links, made.new.links) = (2, 2);
+        let found = ab(&made);
+        let half = 25.451_699_579_357_04 * (0.0002_f64 / 2.0).sqrt();
+        for row in &found.rows {
+            assert!((row.ratio.ln() - 0.03).abs() < 1e-12, "{row:?}");
+            assert!((row.smallest_detectable.unwrap().ln() - half).abs() < 1e-9, "{row:?}");
+        }
+        assert!(
+            found.brief(&made)[0]
+                .ends_with("Each build has 2 links: the layout of code is in the intervals.")
+        );
+        // One link of the old build, four of the new one: each pair of processes has a layout of its own.
+        (made.old.links, made.new.links) = (1, 4);
+        assert_eq!(ab(&made).rows, {
+            (made.old.links, made.new.links) = (1, 1);
+            ab(&made).rows
+        });
     }
 
     #[test]

@@ -35,7 +35,7 @@ mod viewer;
 mod web;
 mod worker;
 
-pub(crate) use ab::AbChoice;
+pub(crate) use ab::{AbChoice, Build};
 use accuracies::Accuracies;
 pub(crate) use bundle::forms_digest;
 pub(crate) use films::Shown;

@@ -43,10 +43,18 @@ pub struct AbRun {
 /// A program that was timed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AbProgram {
-    /// Its file.
+    /// Its file, or the folder of its links.
     pub path: String,
-    /// SHA-256 of it.
+    /// SHA-256 of it; of several links, that of their digests in their order.
     pub sha256: String,
+    /// How many links of one build there are, which differ in the order of their code. A pair of processes takes the link of its own
+    /// number, from the first again after the last.
+    #[serde(default = "one")]
+    pub links: u32,
+}
+
+fn one() -> u32 {
+    1
 }
 
 /// One configuration by both programs, one at once after the other.

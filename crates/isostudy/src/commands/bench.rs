@@ -3,6 +3,7 @@
 mod ab;
 mod baseline;
 mod compare;
+mod count;
 mod export;
 mod history;
 mod import;
@@ -52,6 +53,8 @@ enum Verb {
     Compare(compare::Arguments),
     /// Time two builds of isostudy in turn, in the same rounds: is NEW slower than OLD? Exit 1 if it is
     Ab(ab::Arguments),
+    /// Count the instructions of two builds by valgrind, where the CPU's counters are not allowed: does NEW take more than OLD? Exit 1 if it does
+    Count(count::Arguments),
     /// Show the runs that were kept with --save-baseline, one after the other; table and figure
     History(history::Arguments),
     /// Write a run as criterion or hyperfine writes its own
@@ -73,6 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     match &arguments.verb {
         Some(Verb::Compare(arguments)) => compare::run(arguments),
         Some(Verb::Ab(arguments)) => ab::run(arguments),
+        Some(Verb::Count(arguments)) => count::run(arguments),
         Some(Verb::History(arguments)) => history::run(arguments),
         Some(Verb::Export(arguments)) => export::run(arguments),
         Some(Verb::Sweep(arguments)) => sweep::run(arguments),

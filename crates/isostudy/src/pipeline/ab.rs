@@ -11,6 +11,8 @@ use anyhow::{Context, Result};
 use isostudy_bench::{AbEntry, AbPlan, Allowance, BenchError, LEAST_ROUNDS, ProcessExecutor, run_ab};
 use isostudy_design::ConfigurationId;
 use isostudy_design::record::{AbProgram, AbRun, Purpose};
+use isostudy_timing::{CountRow, CountRun};
+use std::cell::Cell;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -18,12 +20,13 @@ use std::process::Command;
 use std::time::Duration;
 
 const STAGE: &str = "bench/ab";
+const COUNT_STAGE: &str = "bench/count";
 
 /// What is timed, and how.
 #[derive(Debug, Clone)]
 pub(crate) struct AbChoice {
-    pub(crate) old: PathBuf,
-    pub(crate) new: PathBuf,
+    pub(crate) old: Build,
+    pub(crate) new: Build,
     /// Configurations; none for all.
     pub(crate) only: Vec<ConfigurationId>,
     /// Pairs of processes.
@@ -32,6 +35,15 @@ pub(crate) struct AbChoice {
     pub(crate) seconds: f64,
     /// For each answer of a program.
     pub(crate) time_limit: Duration,
+}
+
+/// A build of this program.
+#[derive(Debug, Clone)]
+pub(crate) struct Build {
+    /// The program, or a folder of its links.
+    pub(crate) path: PathBuf,
+    /// Its links, one or more, whose code is in another order each.
+    pub(crate) links: Vec<PathBuf>,
 }
 
 impl Pipeline<'_> {
@@ -88,8 +100,14 @@ impl Pipeline<'_> {
             let mut record = |entry: &AbEntry| file.write_all(entry.line().as_bytes());
             let (_folder, spacings) = self.spacings_file()?;
             let told = self.invocation([section.threads, u32::from(section.pin)], &ids, &spacings)?;
-            let command = |program: &Path| -> Command { told.command(program) };
-            let (of_old, of_new) = (|| command(&choice.old), || command(&choice.new));
+            // A pair of processes has the links of its own number.
+            let ended = done.iter().filter(|entry| matches!(entry, AbEntry::Ended { .. })).count();
+            let begun = [Cell::new(ended), Cell::new(ended)];
+            let command = |side: usize, build: &Build| -> Command {
+                let number = begun[side].replace(begun[side].get() + 1);
+                told.command(&build.links[number % build.links.len()])
+            };
+            let (of_old, of_new) = (|| command(0, &choice.old), || command(1, &choice.new));
             let may_fail = |number: usize| is_program(self.study, configurations[number]);
             let [mut of_old, mut of_new] = [&of_old as &dyn Fn() -> Command, &of_new]
                 .map(|command| ProcessExecutor::new(command).leaving_out(&may_fail).telling(tell_once))
@@ -134,6 +152,61 @@ impl Pipeline<'_> {
         Ok(run)
     }
 
+    /// Counts the instructions of an extraction by both builds, and returns them. Configurations of programs are left out: what they
+    /// start is not counted.
+    ///
+    /// # Errors
+    /// If a program or valgrind cannot be read, started or asked, or a file not be written.
+    pub(crate) fn counted(
+        &self,
+        builds: [&Build; 2],
+        only: &[ConfigurationId],
+        time_limit: Duration,
+    ) -> Result<CountRun> {
+        if self.spacings().is_empty() {
+            self.budgets(&[Purpose::Benchmark], only)?;
+        }
+        let mut configurations = self.timed_of(only)?;
+        configurations.retain(|configuration| !is_program(self.study, configuration));
+        anyhow::ensure!(
+            !configurations.is_empty(),
+            "all configurations are programs: nothing can be counted"
+        );
+        let [old, new] = [program(builds[0])?, program(builds[1])?];
+        let workloads = self.workloads(&configurations, None)?;
+        let inputs =
+            Inputs::default().value("programs", &[&old.sha256, &new.sha256]).value("workloads", &workloads);
+        let step = Step::begin("bench count", 2 * configurations.len(), 0);
+        let stamp = self.stage(COUNT_STAGE, inputs, |writer| {
+            let (_folder, spacings) = self.spacings_file()?;
+            let ids: Vec<ConfigurationId> = configurations.iter().map(|c| c.id.clone()).collect();
+            // One thread, wherever it is.
+            let told = self.invocation([1, 0], &ids, &spacings)?;
+            let allowance = Allowance { time: time_limit, memory_bytes: None };
+            let mut rows = Vec::new();
+            for (subject, id) in ids.iter().enumerate() {
+                let count = |side: usize| -> Result<u64> {
+                    let command = || told.command(&builds[side].links[0]);
+                    let found = isostudy_bench::instructions(&command, subject, allowance);
+                    step.set(2 * subject as u64 + side as u64 + 1, 2 * ids.len() as u64);
+                    let side = ["OLD", "NEW"][side];
+                    found.with_context(|| {
+                        format!("{id} by {side}, under valgrind (Debian: apt install valgrind)")
+                    })
+                };
+                rows.push(CountRow { id: id.clone(), old: count(0)?, new: count(1)? });
+            }
+            let study = self.study.file.study.id.clone();
+            let run = CountRun { schema: CountRun::SCHEMA, study, old: old.clone(), new: new.clone(), rows };
+            writer.write_json(&format!("{COUNT_STAGE}/count.json"), &run)?;
+            write_table(writer, COUNT_STAGE, &run.table())
+        })?;
+        step.count_all(stamp.redone);
+        step.end();
+        let path = self.store.root().join(stamp.file("count.json"));
+        serde_json::from_slice(&input::bytes(&path)?).with_context(|| path.display().to_string())
+    }
+
     fn take_up_ab(&self, journal: &Path, key: &str) -> Result<Vec<AbEntry>> {
         let Ok(text) = std::fs::read_to_string(journal) else { return Ok(Vec::new()) };
         if self.store.forced() {
@@ -156,7 +229,15 @@ impl Pipeline<'_> {
 }
 
 /// What a program's file holds is what it is, wherever it lies.
-fn program(path: &Path) -> Result<AbProgram> {
-    let bytes = input::bytes(path).context("cannot read the program")?;
-    Ok(AbProgram { path: path.display().to_string(), sha256: sha256(&bytes) })
+fn program(build: &Build) -> Result<AbProgram> {
+    let digest = |path: &PathBuf| -> Result<String> {
+        let bytes = input::bytes(path).context("cannot read the program")?;
+        Ok(sha256(&bytes))
+    };
+    let digests: Vec<String> = build.links.iter().map(digest).collect::<Result<_>>()?;
+    let digest = match &digests[..] {
+        [one] => one.clone(),
+        all => sha256(all.concat().as_bytes()),
+    };
+    Ok(AbProgram { path: build.path.display().to_string(), sha256: digest, links: digests.len() as u32 })
 }

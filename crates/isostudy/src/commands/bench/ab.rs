@@ -4,7 +4,7 @@ use super::compare::share;
 use crate::commands::study_run::{Run, Selection, with_selection};
 use crate::input;
 use crate::outcome::Outcome;
-use crate::pipeline::AbChoice;
+use crate::pipeline::{AbChoice, Build};
 use crate::terminal::say;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
@@ -16,9 +16,9 @@ use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The program that the other is compared with: an isostudy of an earlier commit
+    /// The program that the other is compared with: an isostudy of an earlier commit, or a folder of links of it
     old: PathBuf,
-    /// The program that is judged
+    /// The program that is judged, or a folder of links of it
     new: PathBuf,
     #[command(flatten)]
     run: Run,
@@ -92,8 +92,13 @@ struct Record<'a> {
 /// # Errors
 /// If a program or the study is wrong, or a measurement fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let [old, new] = [&arguments.old, &arguments.new].map(|path| program(path));
+    let [old, new] = [&arguments.old, &arguments.new].map(|path| build(path));
     let (old, new) = (old?, new?);
+    let (a, b) = (old.links.len(), new.links.len());
+    if a > 1 && b > 1 && a != b {
+        let [old, new] = [&arguments.old, &arguments.new].map(|path| path.display());
+        bail!("{old} has {a} links and {new} has {b}: both need as many, or one of them a single program");
+    }
     let selection = Selection { run: arguments.run.clone(), only: arguments.only.clone() };
     let mut judged = Outcome::Done;
     let done = with_selection(&selection, |pipeline, only, _| {
@@ -146,6 +151,23 @@ fn answer(arguments: &Arguments, run: &AbRun) -> Result<Outcome> {
         }
     }
     Ok(outcome)
+}
+
+/// A program, or every file in a folder, in the order of their names.
+pub(super) fn build(path: &Path) -> Result<Build> {
+    if !path.is_dir() {
+        return Ok(Build { path: path.to_owned(), links: vec![program(path)?] });
+    }
+    let listed = || path.display().to_string();
+    let mut links = Vec::new();
+    for entry in std::fs::read_dir(path).with_context(listed)? {
+        links.push(program(&entry.with_context(listed)?.path())?);
+    }
+    links.sort();
+    if links.is_empty() {
+        bail!("{}: a folder of links of one program, and it is empty", path.display());
+    }
+    Ok(Build { path: path.to_owned(), links })
 }
 
 /// A file, wherever it is started from.
