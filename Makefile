@@ -28,6 +28,7 @@ test-long: bunny ## run the tests that take minutes: 74,640 volumes against the 
 	{ echo "failed with the seed $(SEED): repeat it by \`make test-long SEED=$(SEED)\`" >&2; exit 1; }
 	cargo build --release --locked --package isostudy
 	scripts/test-cluster.sh target/release/isostudy $(SEED)
+	cargo check --manifest-path examples/engines/Cargo.toml --target-dir target/engines --workspace
 
 attacks: bunny ## attack the command: bad programs, 20,000 damaged files, a server and a study under kills, full disks and removed folders
 	cargo build --release --locked -p isostudy
