@@ -198,7 +198,7 @@ fn a_killed_study_resumes_to_the_same_bytes() {
         let mut command = killed.command("study");
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         // Ever longer, so that the run gets to its end on a machine of any speed.
-        std::thread::sleep(Duration::from_millis(20).mul_f64(1.15_f64.powi(round)));
+        std::thread::sleep(Duration::from_millis(20).mul_f64(1.25_f64.powi(round)));
         match child.try_wait().unwrap() {
             Some(status) => {
                 assert!(status.success());
@@ -211,7 +211,7 @@ fn a_killed_study_resumes_to_the_same_bytes() {
             }
         }
     }
-    assert!(kills >= 3, "killed only {kills} times");
+    assert!(kills >= 5, "killed only {kills} times");
     let found = without_measured_times(files(killed.out()));
     assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
     for (path, bytes) in &expected {
