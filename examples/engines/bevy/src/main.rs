@@ -52,7 +52,7 @@ fn set_up(world: &mut World) {
     let chunks = match Chunks::new() {
         Ok(chunks) => chunks,
         Err(error) => {
-            error!("no thread for chunks: {error}");
+            eprintln!("no thread for chunks: {error}");
             world.write_message(AppExit::error());
             return;
         }
