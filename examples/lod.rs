@@ -12,8 +12,10 @@
 
 #[path = "browser/src/ground.rs"]
 mod ground;
+#[path = "engines/world/src/view.rs"]
+mod view;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::error::Error;
 use std::fmt;
 use std::fs::File;
@@ -31,15 +33,8 @@ use isostudy_raster::{
     Camera, Colouring, Look, Panel, Scale, Shading, Sheet, Turntable, Values, Viewport, panels,
     pixmap_to_png, render_coloured, turntable_coloured,
 };
+use view::{CHUNK, Id, LEVELS, SIGHT, View};
 
-/// Levels, the finest of which has cells of a metre.
-const LEVELS: u32 = 4;
-/// Cells along a side of a chunk of any level.
-const CHUNK: u32 = 16;
-/// Chunks of the coarsest level that are seen to every side, and up and down.
-const SIGHT: [i32; 3] = [3, 3, 1];
-/// A chunk is divided that is nearer than so many of its sides. With 1 or more, levels of neighbours differ by one at most.
-const NEAR: f32 = 1.5;
 /// Surface nets with one vertex per cell, which alone have levels.
 const NETS: Method = Method::SurfaceNets(SurfaceNets::new());
 
@@ -93,9 +88,6 @@ enum Between {
     Skirts,
 }
 
-/// A chunk: its level and its place among those of the level.
-type Id = (u32, [i32; 3]);
-
 /// A chunk that is there, and the neighbours that it was made for.
 struct Held {
     seen: Neighbours,
@@ -112,10 +104,7 @@ struct World {
     extractor: LevelExtractor,
     ground: Ground,
     camera: Vec3,
-    /// What is to be seen.
-    wanted: Vec<Id>,
-    /// What the camera is too near for.
-    divided: HashSet<Id>,
+    view: View,
     held: HashMap<Id, Held>,
     /// Buffers that are free.
     free: Vec<Chunk>,
@@ -130,8 +119,7 @@ impl World {
             extractor: LevelExtractor::try_new(grid, method, &ChunkSettings::default())?,
             ground: Ground::default(),
             camera: Vec3::ZERO,
-            wanted: Vec::new(),
-            divided: HashSet::new(),
+            view: View::default(),
             held: HashMap::new(),
             free: Vec::new(),
         })
@@ -208,15 +196,15 @@ impl World {
 
     /// Makes the chunks that the camera's place asks for. Returns how many are new, and how many were made again.
     fn frame(&mut self) -> Result<[usize; 2], Box<dyn Error>> {
-        let before = std::mem::take(&mut self.wanted);
-        self.look();
-        if self.wanted == before && !self.held.values().any(|held| held.is_stale) {
+        let view = View::from(&self.grids, self.camera.to_array());
+        let before = std::mem::replace(&mut self.view, view).wanted;
+        if self.view.wanted == before && !self.held.values().any(|held| held.is_stale) {
             return Ok([0; 2]);
         }
         let mut old = std::mem::take(&mut self.held);
         let mut made = [0, 0];
-        for &id in &self.wanted {
-            let neighbours = Neighbours::try_new(id.0, |direction| self.level_at(id, direction))?;
+        for &id in &self.view.wanted {
+            let neighbours = Neighbours::try_new(id.0, |direction| self.view.level_at(id, direction))?;
             let seen = match self.between {
                 Between::Seams => self.extractor.seen(&neighbours),
                 Between::Skirts => Neighbours::SAME,
@@ -260,54 +248,6 @@ impl World {
         touched.map(|held| held.is_stale = true).count()
     }
 
-    /// Finds the chunks to be seen from where the camera is.
-    fn look(&mut self) {
-        let top = LEVELS - 1;
-        let here = self.root_of_camera();
-        let mut open: Vec<Id> = Vec::new();
-        for z in -SIGHT[2]..=SIGHT[2] {
-            for y in -SIGHT[1]..=SIGHT[1] {
-                open.extend((-SIGHT[0]..=SIGHT[0]).map(|x| (top, [here[0] + x, here[1] + y, z])));
-            }
-        }
-        self.divided.clear();
-        while let Some((level, id)) = open.pop() {
-            if level == 0 || !self.is_near((level, id)) {
-                self.wanted.push((level, id));
-                continue;
-            }
-            self.divided.insert((level, id));
-            let part = |o: i32| [0, 1, 2].map(|axis| 2 * id[axis] + (o >> axis & 1));
-            open.extend((0..8).map(|o| (level - 1, part(o))));
-        }
-    }
-
-    fn root_of_camera(&self) -> [i32; 3] {
-        self.grids[LEVELS as usize - 1].chunk_at(self.camera.to_array(), CHUNK)
-    }
-
-    /// Whether the camera is too near for a chunk as it is.
-    fn is_near(&self, (level, id): Id) -> bool {
-        let grid = &self.grids[level as usize];
-        let bounds = grid.bounds(grid.chunk(id, CHUNK));
-        let [min, max] = [bounds.min, bounds.max].map(Vec3::from);
-        let away = (self.camera.clamp(min, max) - self.camera).abs().max_element();
-        away < NEAR * (max.x - min.x)
-    }
-
-    /// The level of what touches a chunk in a direction; its own beyond what is seen.
-    fn level_at(&self, (level, id): Id, direction: [i32; 3]) -> u32 {
-        let there = [0, 1, 2].map(|axis| id[axis] + direction[axis]);
-        let at = |level_there: u32| (level_there, there.map(|i| i >> (level_there - level)));
-        let ((_, root), here) = (at(LEVELS - 1), self.root_of_camera());
-        let from = [root[0] - here[0], root[1] - here[1], root[2]];
-        if (0..3).any(|axis| from[axis].abs() > SIGHT[axis]) {
-            return level;
-        }
-        let divided = (level..LEVELS).rev().take_while(|&l| self.divided.contains(&at(l))).count() as u32;
-        LEVELS - 1 - divided
-    }
-
     /// Edges with one triangle, but for those where sight ends.
     fn open_edges(&self) -> Result<usize, Box<dyn Error>> {
         let mesh = weld_chunks(self.held.values().map(|held| &held.chunk))?;
@@ -317,7 +257,7 @@ impl World {
                 *runs.entry([*from.min(to), *from.max(to)]).or_default() += if from < to { 1 } else { -1 };
             }
         }
-        let (top, here) = (&self.grids[LEVELS as usize - 1], self.root_of_camera());
+        let (top, here) = (&self.grids[LEVELS as usize - 1], self.view.root);
         let ends = [-1, 1].map(|side| {
             let root = [0, 1].map(|axis| here[axis] + side * SIGHT[axis] + i32::from(side > 0));
             top.position([root[0] * CHUNK as i32, root[1] * CHUNK as i32, 0])
@@ -390,7 +330,7 @@ impl World {
         let mut colours = Vec::new();
         let radius = (SIGHT[0] as f32 + 0.5) * (CHUNK << (LEVELS - 1)) as f32;
         let top = &self.grids[LEVELS as usize - 1];
-        let bounds = top.bounds(top.chunk(self.root_of_camera(), CHUNK));
+        let bounds = top.bounds(top.chunk(self.view.root, CHUNK));
         let middle = Vec3::from(bounds.min).midpoint(Vec3::from(bounds.max)).with_z(0.0);
         for Held { chunk, .. } in self.held.values() {
             let first = mesh.positions.len() as u32;

@@ -4,7 +4,7 @@
 Usage: scripts/bench-ab-links.py LINKS [SECONDS [RUNS [SAME]]]      a folder of `scripts/links.sh`, of an even number of links
 
 Half of the links are OLD, the others NEW. RUNS comparisons (20) have a slowdown of 1, 3, 5 and 10 % planted, and SAME (60) have none. Each
-takes SECONDS (10). Prints a table for docs/benchmark.md, by CPU time and by time.
+takes SECONDS (10). All comparisons share the links, so they are not independent draws of the layout of code. Prints a table for docs/benchmark.md, by CPU time and by time.
 """
 
 import json
@@ -48,7 +48,6 @@ def main():
             for run in range(same if percent == 0 else runs):
                 line = [links[0], "bench", "ab", builds["old"], builds[str(percent)], folder / "waves.toml"]
                 line += ["--out", folder / f"{percent}-{run}", "--seconds", seconds, "--processes", str(2 * len(links))]
-                # Each comparison of the same build has another order.
                 done = subprocess.run([*line, "--relative", "0", "--format", "json"], capture_output=True, text=True, cwd=folder)
                 if done.returncode > 1:
                     sys.exit(done.stderr)

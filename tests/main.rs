@@ -44,6 +44,7 @@ mod table;
 mod terrain;
 mod truths;
 mod turning;
+mod two_builds;
 mod verify;
 mod viewer;
 mod ways;

@@ -67,8 +67,8 @@ pub struct AbComparison {
     pub schema: u32,
     /// Whether both files are the same, byte for byte.
     pub same_program: bool,
-    /// Links of each build.
-    pub links: u32,
+    /// Links of OLD and of NEW.
+    pub links: [u32; 2],
     /// Time first, and first of each quantity that of all configurations together.
     pub rows: Vec<AbRow>,
     /// What each stage adds to the time of all configurations together, in the order of the stages.
@@ -116,7 +116,7 @@ pub fn ab(run: &AbRun) -> AbComparison {
     AbComparison {
         schema: AB_SCHEMA,
         same_program: run.old.sha256 == run.new.sha256,
-        links: links(run),
+        links: [run.old.links, run.new.links],
         stages: total.map_or_else(Vec::new, |total| stages(run, total.verdict)),
         rows,
         failed: run.failed.clone(),
@@ -272,9 +272,14 @@ impl AbComparison {
             run.processes,
             run.pairs.len(),
             match self.links {
-                1 => "Of each build there is one link: what the layout of its code does is in no interval."
-                    .to_owned(),
-                links => format!("Each build has {links} links: the layout of code is in the intervals."),
+                [1, 1] =>
+                    "Each build is one file: intervals leave out what the layout of code does.".to_owned(),
+                [1, new] =>
+                    format!("OLD is one file, NEW has {new} links: intervals leave out OLD's layout of code."),
+                [old, 1] =>
+                    format!("OLD has {old} links, NEW is one file: intervals leave out NEW's layout of code."),
+                [links, _] =>
+                    format!("Each build has {links} links: the layout of code is in the intervals."),
             }
         )];
         if self.same_program {
@@ -523,6 +528,7 @@ mod tests {
         );
         // One link of the old build, four of the new one: each pair of processes has a layout of its own.
         (made.old.links, made.new.links) = (1, 4);
+        assert!(ab(&made).brief(&made)[0].ends_with("intervals leave out OLD's layout of code."));
         assert_eq!(ab(&made).rows, {
             (made.old.links, made.new.links) = (1, 1);
             ab(&made).rows

@@ -34,10 +34,11 @@ impl Layer {
         self.tangents.clear();
     }
 
-    /// That of an edge, made if it is not known.
-    fn entry(&mut self, edge: usize, make: impl FnOnce() -> Tangent) -> Tangent {
-        if self.numbers.len() <= edge {
-            self.numbers.resize(edge + 1, 0);
+    /// That of an edge of so many, made if it is not known.
+    fn entry(&mut self, edge: usize, edges: usize, make: impl FnOnce() -> Tangent) -> Tangent {
+        // For the whole layer at once: a later one whose surface lies elsewhere allocates nothing.
+        if self.numbers.len() < edges {
+            self.numbers.resize(edges, 0);
         }
         if let Some(known) = self.numbers[edge].checked_sub(1) {
             return self.tangents[known as usize];
@@ -67,8 +68,9 @@ impl<'a> Tangents<'a> {
     pub(super) fn at(&mut self, grid: &CubeGrid, from: [usize; 3], axis: usize, ends: [f32; 2]) -> Tangent {
         let [x, y, z] = from;
         let level = self.level;
-        let edge = 3 * (x + grid.size[0] * y) + axis;
-        self.known[z % 2].entry(edge, || tangent(level, grid, from, axis, ends))
+        let [columns, rows, _] = grid.size;
+        let edge = 3 * (x + columns * y) + axis;
+        self.known[z % 2].entry(edge, 3 * columns * rows, || tangent(level, grid, from, axis, ends))
     }
 }
 

@@ -152,14 +152,14 @@ impl Pipeline<'_> {
         Ok(run)
     }
 
-    /// Counts the instructions of an extraction by both builds, and returns them. Configurations of programs are left out: what they
-    /// start is not counted.
+    /// Counts the instructions of an extraction by both builds, and returns them. Configurations of programs are left out: valgrind
+    /// would count the program that asks them.
     ///
     /// # Errors
     /// If a program or valgrind cannot be read, started or asked, or a file not be written.
     pub(crate) fn counted(
         &self,
-        builds: [&Build; 2],
+        builds: &[Build; 2],
         only: &[ConfigurationId],
         time_limit: Duration,
     ) -> Result<CountRun> {
@@ -167,12 +167,19 @@ impl Pipeline<'_> {
             self.budgets(&[Purpose::Benchmark], only)?;
         }
         let mut configurations = self.timed_of(only)?;
+        let all = configurations.len();
         configurations.retain(|configuration| !is_program(self.study, configuration));
+        if configurations.len() < all {
+            let left_out = expected::configurations_in_words(all - configurations.len());
+            tell!(
+                "bench count: {left_out} of programs are left out: valgrind would count the program that asks them"
+            );
+        }
         anyhow::ensure!(
             !configurations.is_empty(),
             "all configurations are programs: nothing can be counted"
         );
-        let [old, new] = [program(builds[0])?, program(builds[1])?];
+        let [old, new] = [program(&builds[0])?, program(&builds[1])?];
         let workloads = self.workloads(&configurations, None)?;
         let inputs =
             Inputs::default().value("programs", &[&old.sha256, &new.sha256]).value("workloads", &workloads);

@@ -6,27 +6,21 @@
 //! This is docs/engine.md in one file. Nothing here belongs to any engine.
 
 mod ground;
+mod view;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::error::Error;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
 use isostudy_extract::{Chunk, ChunkSettings, Control, Cubes, Grid, LevelExtractor, Method, Neighbours};
 
+use crate::view::{CHUNK, LEVELS, View};
+
 pub use crate::ground::{Ground, Hole};
 
-/// Levels, the finest of which has cells of a metre.
-pub const LEVELS: u32 = 4;
-/// Cells along a side of a chunk of any level.
-const CHUNK: u32 = 16;
-/// Chunks of the coarsest level that are seen to every side, and up and down.
-const SIGHT: [i32; 3] = [3, 3, 1];
-/// A chunk is divided that is nearer than so many of its sides. With 1 or more, levels of neighbours differ by one at most.
-const NEAR: f32 = 1.5;
-
 /// A chunk: its level, and its place among those of the level.
-pub type Id = (u32, [i32; 3]);
+pub type Id = view::Id;
 
 /// What an engine draws: triangles of a chunk, counter-clockwise seen from outside.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -130,15 +124,6 @@ struct Scene {
     free: Vec<Chunk>,
 }
 
-/// What is to be seen from a place, and what the camera is too near for.
-#[derive(Default)]
-struct View {
-    /// The chunk of the coarsest level that has the camera.
-    root: [i32; 3],
-    wanted: Vec<Id>,
-    divided: HashSet<Id>,
-}
-
 impl Scene {
     fn new() -> Result<Self, Box<dyn Error>> {
         let grid = Grid::try_new([0.0; 3], 1.0)?;
@@ -165,7 +150,7 @@ impl Scene {
     /// Makes what the camera's place asks for.
     fn update(&mut self) -> Result<Changes, Box<dyn Error>> {
         let Some(camera) = self.camera else { return Ok(Changes::default()) };
-        let view = self.look(camera);
+        let view = View::from(&self.grids, camera);
         let mut old = std::mem::take(&mut self.held);
         let mut changes = Changes::default();
         for &id in &view.wanted {
@@ -204,55 +189,6 @@ impl Scene {
         }
         Ok(changes)
     }
-
-    /// Finds the chunks to be seen from a place.
-    fn look(&self, camera: [f32; 3]) -> View {
-        let top = LEVELS - 1;
-        let root = self.grids[top as usize].chunk_at(camera, CHUNK);
-        let mut view = View { root, ..View::default() };
-        let mut open: Vec<Id> = Vec::new();
-        for z in -SIGHT[2]..=SIGHT[2] {
-            for y in -SIGHT[1]..=SIGHT[1] {
-                open.extend((-SIGHT[0]..=SIGHT[0]).map(|x| (top, [root[0] + x, root[1] + y, z])));
-            }
-        }
-        while let Some((level, id)) = open.pop() {
-            if level == 0 || !self.is_near((level, id), camera) {
-                view.wanted.push((level, id));
-                continue;
-            }
-            view.divided.insert((level, id));
-            let part = |o: i32| [0, 1, 2].map(|axis| 2 * id[axis] + (o >> axis & 1));
-            open.extend((0..8).map(|o| (level - 1, part(o))));
-        }
-        view
-    }
-
-    /// Whether the camera is too near for a chunk as it is.
-    fn is_near(&self, (level, id): Id, camera: [f32; 3]) -> bool {
-        let grid = &self.grids[level as usize];
-        let bounds = grid.bounds(grid.chunk(id, CHUNK));
-        let away = (0..3).map(|axis| {
-            let [low, high] = [bounds.min[axis], bounds.max[axis]];
-            (camera[axis].clamp(low, high) - camera[axis]).abs()
-        });
-        away.fold(0.0, f32::max) < NEAR * (bounds.max[0] - bounds.min[0])
-    }
-}
-
-impl View {
-    /// The level of what touches a chunk in a direction; its own beyond what is seen.
-    fn level_at(&self, (level, id): Id, direction: [i32; 3]) -> u32 {
-        let there = [0, 1, 2].map(|axis| id[axis] + direction[axis]);
-        let at = |level_there: u32| (level_there, there.map(|i| i >> (level_there - level)));
-        let (_, root) = at(LEVELS - 1);
-        let from = [root[0] - self.root[0], root[1] - self.root[1], root[2]];
-        if (0..3).any(|axis| from[axis].abs() > SIGHT[axis]) {
-            return level;
-        }
-        let divided = (level..LEVELS).rev().take_while(|&l| self.divided.contains(&at(l))).count() as u32;
-        LEVELS - 1 - divided
-    }
 }
 
 fn mesh(chunk: &Chunk) -> ChunkMesh {
@@ -269,6 +205,7 @@ fn mesh(chunk: &Chunk) -> ChunkMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::SIGHT;
     use isostudy_extract::weld_chunks;
 
     /// Edges with one triangle, but for those where sight ends.
@@ -280,7 +217,7 @@ mod tests {
                 *runs.entry([*from.min(to), *from.max(to)]).or_default() += if from < to { 1 } else { -1 };
             }
         }
-        let root = scene.look(scene.camera.unwrap()).root;
+        let root = View::from(&scene.grids, scene.camera.unwrap()).root;
         let side = 8.0 * CHUNK as f32;
         let is_at_end = |v: u32| {
             let p = mesh.positions[v as usize].to_array();

@@ -14,17 +14,46 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+/// Two builds, and the study that both are asked for.
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(super) struct Builds {
     /// The program that the other is compared with: an isostudy of an earlier commit, or a folder of links of it
     old: PathBuf,
     /// The program that is judged, or a folder of links of it
     new: PathBuf,
     #[command(flatten)]
     run: Run,
-    /// Measure this configuration alone, such as ss_bi; may be given several times
+    /// Take this configuration alone, such as ss_bi; may be given several times
     #[arg(long, value_name = "ID")]
     only: Vec<String>,
+}
+
+impl Builds {
+    /// OLD and NEW.
+    ///
+    /// # Errors
+    /// If either is not there, or both are folders of unequal size.
+    pub(super) fn found(&self) -> Result<[Build; 2]> {
+        let (old, new) = (build(&self.old)?, build(&self.new)?);
+        let (a, b) = (old.links.len(), new.links.len());
+        if a > 1 && b > 1 && a != b {
+            let [old, new] = [&self.old, &self.new].map(|path| path.display());
+            bail!(
+                "{old} has {a} links and {new} has {b}: both need as many, or one of them a single program"
+            );
+        }
+        Ok([old, new])
+    }
+
+    pub(super) fn selection(&self) -> Selection {
+        Selection { run: self.run.clone(), only: self.only.clone() }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    builds: Builds,
     /// Measure for so many seconds
     #[arg(long, default_value_t = 170, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=86_400))]
     seconds: u32,
@@ -92,14 +121,8 @@ struct Record<'a> {
 /// # Errors
 /// If a program or the study is wrong, or a measurement fails.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let [old, new] = [&arguments.old, &arguments.new].map(|path| build(path));
-    let (old, new) = (old?, new?);
-    let (a, b) = (old.links.len(), new.links.len());
-    if a > 1 && b > 1 && a != b {
-        let [old, new] = [&arguments.old, &arguments.new].map(|path| path.display());
-        bail!("{old} has {a} links and {new} has {b}: both need as many, or one of them a single program");
-    }
-    let selection = Selection { run: arguments.run.clone(), only: arguments.only.clone() };
+    let [old, new] = arguments.builds.found()?;
+    let selection = arguments.builds.selection();
     let mut judged = Outcome::Done;
     let done = with_selection(&selection, |pipeline, only, _| {
         let choice = AbChoice {
@@ -154,7 +177,7 @@ fn answer(arguments: &Arguments, run: &AbRun) -> Result<Outcome> {
 }
 
 /// A program, or every file in a folder, in the order of their names.
-pub(super) fn build(path: &Path) -> Result<Build> {
+fn build(path: &Path) -> Result<Build> {
     if !path.is_dir() {
         return Ok(Build { path: path.to_owned(), links: vec![program(path)?] });
     }

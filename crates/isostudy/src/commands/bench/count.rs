@@ -1,26 +1,18 @@
 //! `isostudy bench count`: the instructions of two builds.
 
-use super::ab::build;
+use super::ab::Builds;
 use super::compare::share;
-use crate::commands::study_run::{Run, Selection, with_selection};
+use crate::commands::study_run::with_selection;
 use crate::outcome::Outcome;
 use crate::terminal::say;
 use anyhow::Result;
 use clap::Args;
-use std::path::PathBuf;
 use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The program that the other is compared with: an isostudy of an earlier commit
-    old: PathBuf,
-    /// The program that is judged
-    new: PathBuf,
     #[command(flatten)]
-    run: Run,
-    /// Count this configuration alone, such as ss_bi; may be given several times
-    #[arg(long, value_name = "ID")]
-    only: Vec<String>,
+    builds: Builds,
     /// End either program if an answer takes longer than so many seconds; valgrind makes it some 30 times slower
     #[arg(long, default_value_t = 3600, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=86_400))]
     time_limit: u32,
@@ -32,17 +24,17 @@ pub(crate) struct Arguments {
     all: bool,
 }
 
-/// Counts both, and says whether the new one takes more.
+/// Counts both, the first of a build's links, and says whether the new one takes more.
 ///
 /// # Errors
 /// If a program or the study is wrong, or valgrind is not there.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let (old, new) = (build(&arguments.old)?, build(&arguments.new)?);
-    let selection = Selection { run: arguments.run.clone(), only: arguments.only.clone() };
+    let builds = arguments.builds.found()?;
+    let selection = arguments.builds.selection();
     let mut judged = Outcome::Done;
     let done = with_selection(&selection, |pipeline, only, _| {
         let time_limit = Duration::from_secs(arguments.time_limit.into());
-        let found = pipeline.counted([&old, &new], only, time_limit)?;
+        let found = pipeline.counted(&builds, only, time_limit)?;
         if !found.dearer(arguments.relative).is_empty() {
             judged = Outcome::CheckFailed;
         }
