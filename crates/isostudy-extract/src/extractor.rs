@@ -225,6 +225,11 @@ impl Extractor {
         result
     }
 
+    /// Where the last mesh came from, if that was asked for.
+    pub(crate) fn trace(&self) -> Option<&Trace> {
+        self.traced.then_some(&self.trace)
+    }
+
     fn stream(
         &mut self,
         (source, start): (Sampler, Moment),

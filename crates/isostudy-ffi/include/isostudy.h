@@ -47,6 +47,11 @@ typedef enum isostudy_normals {
    From the field's values round the vertex. Needs a field.
    */
   ISOSTUDY_NORMALS_FIELD = 2,
+  /*
+   From the samples round the vertex, for less time than those of triangles. Needs samples, chunks of one level, and marching cubes or
+   surface nets.
+   */
+  ISOSTUDY_NORMALS_SAMPLES = 3,
 } isostudy_normals;
 
 /*

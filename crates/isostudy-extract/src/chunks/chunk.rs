@@ -35,9 +35,10 @@ pub struct Chunk {
     /// [seams](crate::LevelExtractor) to other levels come last.
     pub triangles: Vec<[u32; 3]>,
     /// The key of each vertex. Ascending, unless edges were collapsed: then vertices are numbered by first use. Vertices that only
-    /// seams have come last.
+    /// seams have come last. None without [`ChunkSettings::keys`](crate::ChunkSettings::keys).
     pub keys: Vec<VertexKey>,
-    /// The cell of each triangle by its number in `cells`, x fastest. Ascending, seams aside. See [`cell_of`](Self::cell_of).
+    /// The cell of each triangle by its number in `cells`, x fastest. Ascending, seams aside. See [`cell_of`](Self::cell_of). None
+    /// without [`ChunkSettings::keys`](crate::ChunkSettings::keys).
     pub triangle_cells: Vec<u32>,
     /// The cells whose samples were looked at, those of seams aside.
     pub window: CellBox,
@@ -137,7 +138,7 @@ impl Chunk {
     /// in all chunks that have the vertex.
     ///
     /// # Panics
-    /// If there is no such vertex.
+    /// If there is no such vertex, or chunks have no [keys](crate::ChunkSettings::keys).
     pub fn corners_of(&self, vertex: usize) -> [[i32; 3]; 2] {
         let key = self.keys[vertex];
         if self.world.is_some_and(|world| world.method.family().has_vertices_on_edges()) {
@@ -149,7 +150,7 @@ impl Chunk {
 
     /// Something of one's own for each vertex, such as a material, a colour or light, into `payload`, whose room is used again. `of` is told
     /// the level and the [corners](Self::corners_of) that the vertex lies between. What follows from these alone is the same in all chunks
-    /// that have the vertex, so that no seam shows.
+    /// that have the vertex, so that no seam shows. Without [keys](crate::ChunkSettings::keys) there is none.
     ///
     /// ```
     /// use isostudy_extract::{ChunkExtractor, ChunkSettings, Control, Cubes, Grid, Method, from_fn};
@@ -176,7 +177,7 @@ impl Chunk {
     /// The cell of a triangle, in the whole lattice.
     ///
     /// # Panics
-    /// If there is no such triangle.
+    /// If there is no such triangle, or chunks have no [keys](crate::ChunkSettings::keys).
     pub fn cell_of(&self, triangle: usize) -> [i32; 3] {
         self.cells.cell(self.triangle_cells[triangle])
     }

@@ -39,6 +39,8 @@ pub enum ChunkError {
     NormalsNeedSamples,
     /// Positions relative to a chunk in a box.
     RelativeInBox,
+    /// Chunks of several levels without [keys](crate::ChunkSettings::keys).
+    LevelsNeedKeys,
     /// A setting of the method is out of its range.
     Settings(MethodError),
     /// A method without chunks.
@@ -72,6 +74,7 @@ in_words! {
             "Normals::Samples is for chunks of one level and of samples, by marching cubes without a placement or \
              surface nets without smoothing";
         Self::RelativeInBox => "positions relative to a chunk are for a grid without an end";
+        Self::LevelsNeedKeys => "chunks of several levels find their seams by keys: ChunkSettings::keys must be true";
         Self::Settings(error) => "{error}";
         Self::Method => "this method makes no chunks";
         Self::Accumulated => "chunks need indexed positions";

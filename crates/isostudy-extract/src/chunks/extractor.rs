@@ -160,7 +160,6 @@ impl ChunkExtractor {
             Place::Box(grid) => Some(grid.lattice(arrangement)?),
         };
         let mut extractor = Extractor::new();
-        extractor.traced = true;
         let family = method.family();
         let (normals, halo) = match world.settings.normals {
             Normals::Triangles | Normals::Field => (NormalsOf::Triangles, family.halo()),
@@ -171,6 +170,8 @@ impl ChunkExtractor {
             Normals::None => (NormalsOf::Nothing, family.halo_without_normals()),
         };
         extractor.normals = normals;
+        extractor.traced =
+            world.settings.keys || normals == NormalsOf::Triangles || !family.makes_wanted_alone();
         Ok(Self {
             world,
             how,
@@ -410,7 +411,7 @@ impl ChunkExtractor {
         chunk: &mut Chunk,
     ) -> Result<(), ChunkError> {
         let whole = self.check(cells)?;
-        let (placement, normals) = (self.how.settings.placement, self.world.settings.normals);
+        let placement = self.how.settings.placement;
         let Some(halo) = self.halo else {
             return self.by_growing_windows(given, cells, whole, control, chunk);
         };
@@ -440,8 +441,8 @@ impl ChunkExtractor {
                 is_settled.then_some(lattice)
             };
             if let Some(lattice) = is_settled {
-                let (mesh, trace) = (&self.extraction.mesh, &self.extractor.trace);
-                cut_out(mesh, trace, &lattice, &mut self.numbers, normals, chunk)?;
+                let (mesh, trace) = (&self.extraction.mesh, self.extractor.trace());
+                cut_out(mesh, trace, &lattice, &mut self.numbers, &self.world.settings, chunk)?;
                 chunk.close();
                 return Ok(());
             }
@@ -473,6 +474,10 @@ impl ChunkExtractor {
             let as_in_whole = window.shrunk(halo, &whole);
             let looks = (self.how.settings.topology, normals);
             if collapsed(mesh, trace, &lattice, as_in_whole, looks, chunk)? {
+                if !self.world.settings.keys {
+                    chunk.keys.clear();
+                    chunk.triangle_cells.clear();
+                }
                 chunk.close();
                 return Ok(());
             }

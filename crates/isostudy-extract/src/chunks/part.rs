@@ -6,7 +6,7 @@ use glam::Vec3;
 use isostudy_mesh::TriangleMesh;
 
 use super::chunk::Chunk;
-use super::settings::Normals;
+use super::settings::{ChunkSettings, Normals};
 use crate::lattice::Lattice;
 use crate::memory::{push, refill};
 use crate::surface::trace::Trace;
@@ -16,21 +16,27 @@ const NOWHERE: u32 = u32::MAX;
 const SOMEWHERE: u32 = 0;
 
 /// Cuts the chunk's cells out of the mesh of a window: their triangles, with the vertices that they use and those of the
-/// chunk's own points. `numbers` is room to work in.
+/// chunk's own points. Without a trace the mesh has nothing else. `numbers` is room to work in.
 pub(super) fn cut_out(
     mesh: &TriangleMesh,
-    trace: &Trace,
+    trace: Option<&Trace>,
     window: &Lattice,
     numbers: &mut Vec<u32>,
-    normals: Normals,
+    &ChunkSettings { normals, keys, .. }: &ChunkSettings,
     chunk: &mut Chunk,
 ) -> Result<(), TryReserveError> {
+    let has_normals = normals != Normals::None;
+    let Some(trace) = trace else { return copied(mesh, has_normals, chunk) };
     let seen = match trace.part {
         Some(part) => window.cells_of(part),
         None => window.cell_box(),
     };
     if seen == chunk.cells && trace.part.is_some() && !trace.has_spare {
-        return copied(mesh, trace, normals, chunk);
+        if keys {
+            append(&mut chunk.triangle_cells, &trace.cells)?;
+            append(&mut chunk.keys, &trace.keys)?;
+        }
+        return copied(mesh, has_normals, chunk);
     }
     numbers.clear();
     refill(numbers, mesh.positions.len(), NOWHERE)?;
@@ -43,15 +49,19 @@ pub(super) fn cut_out(
         let cell = seen.cell(number);
         if chunk.cells.contains(cell) {
             push(&mut chunk.triangles, *triangle)?;
-            push(&mut chunk.triangle_cells, chunk.cells.number(cell))?;
+            if keys {
+                push(&mut chunk.triangle_cells, chunk.cells.number(cell))?;
+            }
             triangle.iter().for_each(|&v| numbers[v as usize] = SOMEWHERE);
         }
     }
     for (v, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number != NOWHERE) {
-        *number = chunk.keys.len() as u32;
-        push(&mut chunk.keys, trace.keys[v])?;
+        *number = chunk.positions.len() as u32;
         push(&mut chunk.positions, mesh.positions[v].to_array())?;
-        if normals != Normals::None {
+        if keys {
+            push(&mut chunk.keys, trace.keys[v])?;
+        }
+        if has_normals {
             push(&mut chunk.normals, mesh.normals[v].to_array())?;
         }
     }
@@ -59,20 +69,13 @@ pub(super) fn cut_out(
     Ok(())
 }
 
-/// The same of a mesh that is the chunk's.
-fn copied(
-    mesh: &TriangleMesh,
-    trace: &Trace,
-    normals: Normals,
-    chunk: &mut Chunk,
-) -> Result<(), TryReserveError> {
+/// All vertices and triangles of a mesh that is the chunk's.
+fn copied(mesh: &TriangleMesh, has_normals: bool, chunk: &mut Chunk) -> Result<(), TryReserveError> {
     append(&mut chunk.triangles, &mesh.triangles)?;
-    append(&mut chunk.triangle_cells, &trace.cells)?;
-    append(&mut chunk.keys, &trace.keys)?;
     let as_array = |point: &Vec3| point.to_array();
     chunk.positions.try_reserve(mesh.positions.len())?;
     chunk.positions.extend(mesh.positions.iter().map(as_array));
-    if normals != Normals::None {
+    if has_normals {
         chunk.normals.try_reserve(mesh.normals.len())?;
         chunk.normals.extend(mesh.normals.iter().map(as_array));
     }

@@ -1,7 +1,7 @@
 //! What changes a chunk beside the method.
 
 /// Settings of chunks. Those that weld have the same.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ChunkSettings {
     /// Points with a value above this are inside; 0 if nothing else is said.
@@ -14,6 +14,16 @@ pub struct ChunkSettings {
     /// [weld](crate::weld_chunks). A field is asked in single precision, and is no finer than that: samples are. Needs a
     /// [`Grid`](crate::Grid) without an end.
     pub relative: bool,
+    /// Whether chunks have [`Chunk::keys`](crate::Chunk::keys) and [`Chunk::triangle_cells`](crate::Chunk::triangle_cells); they do if
+    /// nothing else is said. Without, both are empty, and a chunk takes less time. Such chunks do not [weld](crate::weld_chunks), have no
+    /// [`payload`](crate::Chunk::payload), and are of one level.
+    pub keys: bool,
+}
+
+impl Default for ChunkSettings {
+    fn default() -> Self {
+        Self { isovalue: 0.0, normals: Normals::default(), relative: false, keys: true }
+    }
 }
 
 impl ChunkSettings {
@@ -25,6 +35,11 @@ impl ChunkSettings {
     /// The same with positions relative to the chunk's corner, or not.
     pub fn with_relative_positions(self, relative: bool) -> Self {
         Self { relative, ..self }
+    }
+
+    /// The same with keys of vertices and cells of triangles, or without.
+    pub fn with_keys(self, keys: bool) -> Self {
+        Self { keys, ..self }
     }
 
     /// The same with other normals.

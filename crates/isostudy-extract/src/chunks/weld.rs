@@ -23,6 +23,8 @@ pub enum WeldError {
     },
     /// Positions are relative to each chunk: see [`ChunkSettings::relative`](crate::ChunkSettings::relative).
     Relative,
+    /// Chunks have no keys: see [`ChunkSettings::keys`](crate::ChunkSettings::keys).
+    NoKeys,
     /// Two chunks of one level have triangles of one cell.
     Overlap {
         /// The cell.
@@ -41,6 +43,7 @@ in_words! {
     WeldError {
         Self::Worlds { worlds } => "chunks of two worlds: {}; and {}", worlds[0], worlds[1];
         Self::Relative => "the positions are relative to each chunk, and no positions of one mesh";
+        Self::NoKeys => "the chunks have no keys, by which they weld: ChunkSettings::keys must be true";
         Self::Overlap { cell } => "cell {cell:?} is in two of the chunks";
         Self::Mismatch(error) => "{error}";
         Self::TooManyVertices => "the chunks have more than {} vertices", u32::MAX;
@@ -83,7 +86,7 @@ impl From<TryReserveError> for WeldError {
 /// were never extracted are left out. Of chunks of [several levels](crate::LevelExtractor) it makes one mesh, finer levels first.
 ///
 /// # Errors
-/// [`WeldError::Worlds`], [`WeldError::Relative`], [`WeldError::Overlap`] and [`WeldError::Mismatch`] if the chunks are not of one extraction. Two
+/// [`WeldError::Worlds`], [`WeldError::Relative`], [`WeldError::NoKeys`], [`WeldError::Overlap`] and [`WeldError::Mismatch`] if the chunks are not of one extraction. Two
 /// fields that agree wherever their chunks meet cannot be told from one.
 pub fn weld_chunks<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Result<TriangleMesh, WeldError> {
     let mut in_order: Vec<&Chunk> = chunks.into_iter().filter(|chunk| chunk.world.is_some()).collect();
@@ -96,6 +99,9 @@ pub fn weld_chunks<'a>(chunks: impl IntoIterator<Item = &'a Chunk>) -> Result<Tr
     }
     if in_order.iter().any(|chunk| chunk.world.is_some_and(|world| world.settings.relative)) {
         return Err(WeldError::Relative);
+    }
+    if in_order.iter().any(|chunk| chunk.world.is_some_and(|world| !world.settings.keys)) {
+        return Err(WeldError::NoKeys);
     }
     let from_below = |[x, y, z]: [i32; 3]| [z, y, x];
     in_order.sort_by_key(|chunk| from_below(chunk.cells.start));

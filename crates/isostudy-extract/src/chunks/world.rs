@@ -85,10 +85,13 @@ impl fmt::Display for World {
                 write!(f, "cells of {spacing} in the box {min:?} to {max:?}")?;
             }
         }
-        let ChunkSettings { isovalue, normals, relative } = self.settings;
+        let ChunkSettings { isovalue, normals, relative, keys } = self.settings;
         write!(f, " with isovalue {isovalue} and normals {normals:?} by {:?}", self.method)?;
         if relative {
             f.write_str(" relative to each chunk")?;
+        }
+        if !keys {
+            f.write_str(" without keys")?;
         }
         match self.level {
             Some(level) => write!(f, " at level {level}"),

@@ -85,6 +85,9 @@ impl LevelExtractor {
         if settings.normals == Normals::Samples {
             return Err(ChunkError::NormalsNeedSamples.into());
         }
+        if !settings.keys {
+            return Err(ChunkError::LevelsNeedKeys.into());
+        }
         let mut made = Self {
             grid: *grid,
             method: *method,

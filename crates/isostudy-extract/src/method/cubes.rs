@@ -147,6 +147,10 @@ impl Family for Cubes {
         if self.placement == Placement::MeanOfCrossings { Some(1) } else { None }
     }
 
+    fn makes_wanted_alone(&self) -> bool {
+        self.placement == Placement::MeanOfCrossings
+    }
+
     /// A vertex of a cell is one of its neighbours' too, and their other vertices give it its normal; no vertex depends on
     /// samples beyond its own cells.
     fn unmoved_halo(&self) -> Option<u32> {

@@ -65,7 +65,12 @@ pub(crate) trait Family {
     fn halo_with_normals_of_samples(&self) -> Option<u32> {
         None
     }
-    /// The same before vertices are moved or edges collapsed; `None` only where there are no chunks.
+    /// Whether the mesh of the cells that are wanted is that of their own vertices and triangles, whatever else is in the window. Then
+    /// nothing has to say which are theirs, but where normals are of more triangles.
+    fn makes_wanted_alone(&self) -> bool {
+        false
+    }
+    /// As [`halo`](Self::halo) before vertices are moved or edges collapsed; `None` only where there are no chunks.
     fn unmoved_halo(&self) -> Option<u32> {
         None
     }

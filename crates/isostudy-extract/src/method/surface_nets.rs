@@ -94,6 +94,11 @@ impl Family for SurfaceNets {
         MethodError::unless(self.smoothing <= MOST_SMOOTHING, "smoothing", self.smoothing, allowed)
     }
 
+    /// With patches, a cell beside them has vertices between those that are needed.
+    fn makes_wanted_alone(&self) -> bool {
+        self.smoothing == 0 && !self.patches
+    }
+
     /// A triangle has vertices of the next lower cells. With patches, how such a cell is cut may be for the next one to say.
     fn halo_without_normals(&self) -> Option<u32> {
         Some(self.smoothing + if self.patches { 2 } else { 1 })

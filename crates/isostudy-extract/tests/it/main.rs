@@ -20,6 +20,7 @@ mod dual_contouring;
 mod edge_clamp;
 mod fields;
 mod fuzz;
+mod keys;
 mod label_chunks;
 mod labels;
 mod lattice;

@@ -50,8 +50,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let ids: Vec<[i32; 3]> = (0..CHUNKS).map(|i| [i % nx, i / nx % ny, i / nx / ny]).collect();
         let sampled = Sampled::of(field, &ids);
         for (what, settings) in [
+            // What fast-surface-nets makes, and no more.
+            ("normals of samples, no keys", settings.with_normals(Normals::Samples).with_keys(false)),
             ("normals of samples", settings.with_normals(Normals::Samples)),
             ("normals of triangles", settings),
+            ("no normals, no keys", settings.with_normals(Normals::None).with_keys(false)),
             ("no normals", settings.with_normals(Normals::None)),
         ] {
             let what = format!("{name}, {what}");

@@ -23,9 +23,11 @@ impl ChunkExtractor {
         mesh.positions.try_reserve(vertices)?;
         mesh.normals.try_reserve(vertices)?;
         mesh.triangles.try_reserve(2 * vertices)?;
-        trace.keys.try_reserve(vertices)?;
-        trace.cells.try_reserve(2 * vertices)?;
-        self.numbers.try_reserve(vertices)?;
+        if self.extractor.traced {
+            trace.keys.try_reserve(vertices)?;
+            trace.cells.try_reserve(2 * vertices)?;
+            self.numbers.try_reserve(vertices)?;
+        }
         self.complete_tables();
         Ok(())
     }
