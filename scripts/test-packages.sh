@@ -11,7 +11,10 @@ wanted=(description license readme documentation keywords categories rust_versio
 target=$(cargo metadata --format-version 1 --no-deps --locked | python3 -c 'import json, sys; print(json.load(sys.stdin)["target_directory"])')
 work=$target/packages
 rm -rf "$work/clone" "$work/build/package"
-mkdir -p "$work"
+mkdir -p "$work/build"
+# Cargo takes packages of one version for the same: those of the last run would be built again.
+rm -rf "${CARGO_HOME:-$HOME/.cargo}"/registry/src/*/isostudy-*-0.1.0
+find "$work/build" -depth -path '*/.fingerprint/isostudy-*' -type d -exec rm -r {} +
 # Where no other manifest is above.
 outside=$(mktemp -d)
 trap 'rm -r "$outside"' EXIT
