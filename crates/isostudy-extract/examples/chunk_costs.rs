@@ -115,7 +115,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // What of that are calls of the field.
     for preset in ["mc", "nets", "dc"] {
         let method = presets().iter().find(|of| of.id == preset).ok_or("a preset")?.method;
-        let counted = Counted { ground: &ground, points: Mutex::default() };
+        let counted = Counted { ground: &ground, points: Mutex::default(), boxes: Mutex::default() };
         let mut extractor = ChunkExtractor::try_new(&grid, &method, &ChunkSettings::default())?;
         let mut chunk = Chunk::default();
         let mut vertices = 0;
@@ -127,12 +127,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let start = Instant::now();
         points.iter().for_each(|p| _ = black_box(ground.sample(*p)));
         let ms = start.elapsed().as_secs_f64() * 1e3;
+        let boxes = counted.boxes.into_inner()?;
+        let start = Instant::now();
+        boxes.iter().for_each(|b| _ = black_box(ground.bound(*b)));
+        let boxes_ms = start.elapsed().as_secs_f64() * 1e3;
         let of_each = |sum: f64| sum / ids().count() as f64;
         println!(
-            "{preset}: per chunk {} vertices, {} values of the field, which take {:.2} ms alone",
+            "{preset}: per chunk {} vertices, {} values of the field, which take {:.2} ms alone, {} bounds, {:.2} ms",
             of_each(vertices as f64),
             of_each(points.len() as f64),
-            of_each(ms)
+            of_each(ms),
+            of_each(boxes.len() as f64),
+            of_each(boxes_ms)
         );
     }
     // What no method can do without that takes every sample.
@@ -146,10 +152,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The ground, with every point that is asked for.
+/// The ground, with every point and every box that is asked for.
 struct Counted<'a> {
     ground: &'a Ground,
     points: Mutex<Vec<[f32; 3]>>,
+    boxes: Mutex<Vec<Aabb>>,
 }
 
 impl ScalarField for Counted<'_> {
@@ -159,6 +166,7 @@ impl ScalarField for Counted<'_> {
     }
 
     fn bound(&self, bounds: Aabb) -> Bound {
+        self.boxes.lock().expect("no thread panics").push(bounds);
         self.ground.bound(bounds)
     }
 }
