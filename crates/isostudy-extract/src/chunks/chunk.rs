@@ -102,7 +102,7 @@ impl Chunk {
     }
 
     /// Whether the chunk can be another one when the field has changed in this box, and nowhere else. If not, it is the
-    /// same to the bit: nothing in the box was looked at. [`Grid::touched`] names all such chunks.
+    /// same to the bit: nothing in the box was looked at, for seams neither. [`Grid::touched`] names all such chunks of one level.
     ///
     /// The box is that of all points whose *value* changes. To dig a ball out of a distance with `min(solid, ball)`
     /// changes values everywhere outside of the ball that are greater than the distance to it: cut the field off a few

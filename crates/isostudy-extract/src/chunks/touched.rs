@@ -10,6 +10,9 @@ impl Grid {
     /// The chunks of so many cells a side that can be other ones when the field has changed in a box and nowhere else:
     /// those that look at samples in it, by id, x fastest.
     ///
+    /// The grid is that of one level, whose chunks have no seams: chunks of a [`LevelExtractor`](crate::LevelExtractor) look farther where
+    /// neighbours are of another level, and each says itself whether it is [touched](crate::Chunk::is_touched_by).
+    ///
     /// The box is that of all points whose *value* changes. To dig a ball out of a distance with `min(solid, ball)`
     /// changes values everywhere outside of the ball that are greater than the distance to it: cut the field off a few
     /// cells inside the solid, as `examples/dig.rs` does.
