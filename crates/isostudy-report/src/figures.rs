@@ -2,6 +2,7 @@
 
 mod answers;
 mod axis;
+mod barometer;
 mod bars;
 mod canvas;
 mod cases;
@@ -29,6 +30,7 @@ mod sweep;
 mod worths;
 
 use crate::figure::Figure;
+pub use barometer::{EnginePoint, barometer_figure};
 use draft::Unfinished;
 pub use edge_groups::{KindShare, TableQuality, edge_groups_figure};
 pub use error::FigureError;

@@ -48,8 +48,8 @@ pub use cases::sweep_section;
 pub use data::frames;
 pub use figure::Figure;
 pub use figures::{
-    FigureError, KindShare, OVERVIEW, TableQuality, case_figures, edge_groups_figure, figures,
-    figures_of_groups, history_figure, power_figure, sweep_figures,
+    EnginePoint, FigureError, KindShare, OVERVIEW, TableQuality, barometer_figure, case_figures,
+    edge_groups_figure, figures, figures_of_groups, history_figure, power_figure, sweep_figures,
 };
 #[cfg(feature = "frames")]
 pub use frames::{

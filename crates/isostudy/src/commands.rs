@@ -1,6 +1,7 @@
 //! The commands, one per verb: each has its arguments and its `run`.
 
 pub(crate) mod analyse;
+pub(crate) mod barometer;
 pub(crate) mod bench;
 pub(crate) mod bundle;
 pub(crate) mod collect;

@@ -9,6 +9,7 @@ use anyhow::{Context, Result, bail};
 use isostudy_design::Study;
 use isostudy_design::record::Purpose;
 use isostudy_foreign::shown_in_a_line;
+use isostudy_program::Program;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -50,15 +51,23 @@ struct Wanted {
 /// If it is not allowed, with what would run and the command that allows it; if a program cannot be found.
 pub(crate) fn ask(study: &Study, given: bool, sandbox: bool) -> Result<()> {
     recipe::use_sandbox(sandbox);
+    ask_for(&study.path, &programs(study)?, given, sandbox)
+}
+
+/// The same for programs that a file names, each with what it is called there.
+///
+/// # Errors
+/// As [`ask`].
+pub(crate) fn ask_for(file: &Path, programs: &[(String, Program)], given: bool, sandbox: bool) -> Result<()> {
     let path = record_file();
     let mut record = path.as_deref().map_or_else(Record::default, read);
-    let wanted = wanted(study, sandbox, &record)?;
+    let wanted = wanted(programs, sandbox, &record)?;
     let is_new = |wanted: &&Wanted| !record.allowed.iter().any(|known| covers(known, &wanted.allowed));
     let new: Vec<&Wanted> = wanted.iter().filter(is_new).collect();
     if new.is_empty() && !given {
         return Ok(());
     }
-    let name = study.path.display();
+    let name = file.display();
     let power = if sandbox { "in a sandbox" } else { "which may do whatever you may do" };
     let list = |of: &[&Wanted]| of.iter().map(|wanted| wanted.told.as_str()).collect::<Vec<_>>().join("\n");
     if given {
@@ -102,17 +111,26 @@ fn covers(known: &Allowed, wanted: &Allowed) -> bool {
     known.words == wanted.words && known.files == wanted.files && (!known.sandbox || wanted.sandbox)
 }
 
-fn wanted(study: &Study, sandbox: bool, record: &Record) -> Result<Vec<Wanted>> {
+/// The programs of a study.
+fn programs(study: &Study) -> Result<Vec<(String, Program)>> {
     let mut all = Vec::new();
     // Files are shown, and nothing is run.
     if study.shown_files().is_some() {
         return Ok(all);
     }
     for method in &study.methods {
-        let Recipe::Program(program) = recipe::recipe(study, method.id, Purpose::Benchmark)? else {
-            continue;
-        };
-        let words = program.words().with_context(|| recipe::key(study, method.id))?;
+        if let Recipe::Program(program) = recipe::recipe(study, method.id, Purpose::Benchmark)? {
+            program.words().with_context(|| recipe::key(study, method.id))?;
+            all.push((method.id.to_string(), program));
+        }
+    }
+    Ok(all)
+}
+
+fn wanted(programs: &[(String, Program)], sandbox: bool, record: &Record) -> Result<Vec<Wanted>> {
+    let mut all = Vec::new();
+    for (name, program) in programs {
+        let words = program.words()?;
         let mut files = BTreeMap::new();
         for path in words.iter().map(Path::new).filter(|path| path.is_absolute() && path.is_file()) {
             files.insert(path.display().to_string(), sha256_of(path)?);
@@ -120,7 +138,7 @@ fn wanted(study: &Study, sandbox: bool, record: &Record) -> Result<Vec<Wanted>> 
         let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
         let before = record.allowed.iter().find(|known| known.words == words).map(|known| &known.files);
         let quoted: Vec<String> = program.command.iter().map(|word| format!("{word:?}")).collect();
-        let mut told = format!("  {}: {}", method.id, quoted.join(" "));
+        let mut told = format!("  {name}: {}", quoted.join(" "));
         for (file, digest) in &files {
             let changed = before.is_some_and(|before| before.get(file) != Some(digest));
             let note = if changed { ", changed since you allowed it" } else { "" };

@@ -118,6 +118,8 @@ enum Command {
     Table(commands::table::Arguments),
     /// Check whether a mesh, made by any program, has the topology of the volume it was made of
     Verify(commands::verify::Arguments),
+    /// Hold extractors against workloads whose truth is known, and rank those that are right
+    Barometer(commands::barometer::Arguments),
     /// Judge a questionnaire before anyone answers, and deal its forms
     #[command(subcommand)]
     Design(commands::design::Verb),
@@ -162,6 +164,7 @@ fn run(command: &Command) -> Result<Outcome> {
         Command::Inspect(arguments) => commands::inspect::run(arguments),
         Command::Distance(arguments) => commands::distance::run(arguments),
         Command::Verify(arguments) => commands::verify::run(arguments),
+        Command::Barometer(arguments) => commands::barometer::run(arguments),
         Command::Design(verb) => commands::design::run(verb),
     }
 }

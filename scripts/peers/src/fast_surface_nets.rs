@@ -12,8 +12,7 @@ pub(crate) fn extractor() -> Extract {
     Box::new(move |request, samples| {
         let begin = Instant::now();
         // Inside is negative there.
-        negated.clear();
-        negated.extend(samples.iter().map(|&sample| (request.isovalue - f64::from(sample)) as f32));
+        request.negate(samples, &mut negated);
         let converted = begin.elapsed();
         let shape = RuntimeShape::<u32, 3>::new(request.size);
         let begin = Instant::now();

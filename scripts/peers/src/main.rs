@@ -1,10 +1,17 @@
 //! Extracts with another crate, as a program of a study: `peers-worker --method NAME`, then lines of JSON as `docs/programs.md` has
 //! them. `peers-worker --list` names the methods.
 
+mod baby_shark;
 mod fast_surface_nets;
+mod ferreus_rmt;
+mod isomesh;
 mod isosurface;
+mod mcubes;
+mod polyscope_core;
 mod request;
+mod splashsurf_lib;
 mod transvoxel;
+mod trilinear;
 
 use isostudy_mesh::{TriangleMesh, write_ply};
 use request::Request;
@@ -29,16 +36,75 @@ type Extract = Box<dyn FnMut(&Request, &[f32]) -> Result<Extraction, String>>;
 /// Name, version, what is in its time, extractor.
 type Method = (&'static str, &'static str, &'static str, fn() -> Extract);
 
-const METHODS: [Method; 3] = [
+const METHODS: [Method; 14] = [
+    (
+        "baby-shark-dual-contouring",
+        "0.3.12",
+        "three vertices for each triangle, none shared; filling its sparse grid is not in its time",
+        baby_shark::dual_contouring,
+    ),
+    (
+        "baby-shark-marching-cubes",
+        "0.3.12",
+        "three vertices for each triangle, none shared; filling its sparse grid is not in its time",
+        baby_shark::marching_cubes,
+    ),
     ("fast-surface-nets", "0.2.1", "normals are in its time", fast_surface_nets::extractor),
+    (
+        "ferreus-rmt",
+        "0.1.0",
+        "calls of the interpolant and finding points on the surface to start from are not in its time",
+        ferreus_rmt::extractor,
+    ),
+    (
+        "isomesh-dual-contouring",
+        "0.0.14",
+        ISOMESH,
+        isomesh::extractor::<::isomesh::dual_contouring::DualContouring<f32>>,
+    ),
+    (
+        "isomesh-manifold-dual-contouring",
+        "0.0.14",
+        ISOMESH,
+        isomesh::extractor::<::isomesh::manifold_dual_contouring::ManifoldDualContouring<f32>>,
+    ),
+    (
+        "isomesh-marching-cubes",
+        "0.0.14",
+        ISOMESH,
+        isomesh::extractor::<::isomesh::marching_cubes::MarchingCubes<f32>>,
+    ),
+    (
+        "isomesh-marching-tetrahedra",
+        "0.0.14",
+        ISOMESH,
+        isomesh::extractor::<::isomesh::marching_tetrahedra::MarchingTetrahedra<f32>>,
+    ),
+    (
+        "isomesh-surface-nets",
+        "0.0.14",
+        ISOMESH,
+        isomesh::extractor::<::isomesh::surface_nets::SurfaceNets<f32>>,
+    ),
     (
         "isosurface",
         "0.0.4",
         "looking samples up is in its time; it does not join its vertices",
         isosurface::extractor,
     ),
+    (
+        "mcubes",
+        "0.1.7",
+        "three vertices for each triangle, none shared; normals are in its time",
+        mcubes::extractor,
+    ),
+    ("polyscope-core", "0.5.10", "normals are in its time", polyscope_core::extractor),
+    ("splashsurf-lib", "0.14.1", "its time is that of hash maps of cells", splashsurf_lib::extractor),
     ("transvoxel", "2.0.0", "looking samples up and normals are in its time", transvoxel::extractor),
 ];
+
+/// What is in the time of each extractor of isomesh.
+const ISOMESH: &str = "calls of its own interpolant of the samples, and normals, are in its time";
 
 fn main() {
     if let Err(error) = run() {
@@ -61,6 +127,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     };
     let found = METHODS.into_iter().find(|method| method.0 == name);
     let (name, version, note, extractor) = found.ok_or(format!("--method {name}: known are {names}"))?;
+    // Times of one and of many threads are not comparable.
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global()?;
     let mut extract = extractor();
     say(&json!({ "ready": { "name": name, "version": version, "note": note } }))?;
     for line in stdin().lock().lines() {

@@ -39,6 +39,12 @@ impl Request {
         }
     }
 
+    /// The isovalue less each sample, for crates where inside is negative.
+    pub(crate) fn negate(&self, samples: &[f32], negated: &mut Vec<f32>) {
+        negated.clear();
+        negated.extend(samples.iter().map(|&sample| (self.isovalue - f64::from(sample)) as f32));
+    }
+
     /// A place in cells, in the samples' space.
     pub(crate) fn place(&self, [x, y, z]: [f32; 3]) -> Vec3 {
         let at = |a: usize, cells: f32| (self.origin[a] + self.spacing[a] * f64::from(cells)) as f32;

@@ -5,6 +5,7 @@ use isostudy_field::{Beyond, StoredSamples, VolumeField, VolumeFieldError};
 use isostudy_mesh::Bounds;
 
 use crate::active::{ActiveError, Bricks, GridSamples};
+use crate::clock::Moment;
 use crate::execution::control::Control;
 use crate::extraction::ExtractError;
 use crate::extraction::Extraction;
@@ -12,7 +13,7 @@ use crate::extractor::Extractor;
 use crate::lattice::BoxGrid;
 use crate::memory::copied;
 use crate::method::{Method, MethodError};
-use crate::source::Source;
+use crate::source::{NormalsOf, Source};
 use crate::surface::normals::vertex_normals;
 use crate::surface::space::Space;
 use crate::wording::in_words;
@@ -183,11 +184,17 @@ impl<'a> VolumeCells<'a> {
         }
         let space = Space::try_new(origin, steps).ok_or(VolumeCellsError::Steps { steps, origin })?;
         let grid = self.grid();
-        let mut extraction = method.extract(extractor, source, &grid, isovalue, control)?;
+        // Those of the grid's own steps would be made for nothing.
+        let normals = std::mem::replace(&mut extractor.normals, NormalsOf::Nothing);
+        let extraction = method.extract(extractor, source, &grid, isovalue, control);
+        extractor.normals = normals;
+        let mut extraction = extraction?;
         let mesh = &mut extraction.mesh;
         space.place(mesh);
+        let making_normals = Moment::now();
         let normals = vertex_normals(&mesh.positions, &mesh.triangles);
         mesh.normals = normals.map_err(|_| MethodError::from(ExtractError::NoMemoryForMesh))?;
+        extraction.times.normals = making_normals.elapsed();
         Ok(extraction)
     }
 }

@@ -1,0 +1,52 @@
+//! `isostudy barometer compare`: whether two recordings agree.
+
+use super::told::Recording;
+use crate::outcome::Outcome;
+use crate::terminal::say;
+use anyhow::Result;
+use clap::Args;
+use isostudy_barometer::agreement::Agreement;
+use isostudy_barometer::engine::Takes;
+use isostudy_barometer::ranks::Quantity;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder of a recording
+    one: PathBuf,
+    /// Folder of another
+    other: PathBuf,
+}
+
+/// Compares the order of engines, quantity by quantity.
+///
+/// # Errors
+/// If a recording cannot be read.
+pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
+    let [one, other] = [&arguments.one, &arguments.other].map(|folder| Recording::read(folder));
+    let (one, other) = (one?, other?);
+    let mut agrees = true;
+    say("| quantity | given | told by both, in one order | in opposite order | told by one alone |")?;
+    say("|---|---|---:|---:|---:|")?;
+    for takes in [Takes::Samples, Takes::Field] {
+        for quantity in Quantity::ALL {
+            let found = Agreement::of(&one.ranking(quantity, takes), &other.ranking(quantity, takes));
+            let given = if takes == Takes::Samples { "samples" } else { "a field" };
+            let (same, opposite, alone) = (found.same, found.opposite.len(), found.one_alone);
+            if same + opposite + alone > 0 {
+                say(&format!("| {} | {given} | {same} | {opposite} | {alone} |", quantity.words()))?;
+            }
+            for (better, worse) in &found.opposite {
+                agrees = false;
+                let names = [better, worse].map(|engine| one.name(engine));
+                tell!(
+                    "{}: {} is before {} in the first recording, and behind it in the second",
+                    quantity.words(),
+                    names[0],
+                    names[1]
+                );
+            }
+        }
+    }
+    Ok(Outcome::of_check(agrees))
+}

@@ -1,0 +1,105 @@
+//! The page of a recording, its tables as text, and the figure that shows speed against correctness.
+
+use super::told::{Recording, Table};
+use crate::outcome::Outcome;
+use crate::store::write_whole;
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use isostudy_barometer::engine::Takes;
+use isostudy_barometer::ranks::Quantity;
+use isostudy_report::{EnginePoint, barometer_figure};
+use minijinja::{Environment, context};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder of the recording
+    recording: PathBuf,
+    /// Put the tables into this page too, between its two marks `<!-- barometer -->` and `<!-- end of barometer -->`
+    #[arg(long, value_name = "FILE")]
+    into: Option<PathBuf>,
+}
+
+const BEGIN: &str = "<!-- barometer -->";
+const END: &str = "<!-- end of barometer -->";
+
+const PAGE: &str = include_str!("page.html");
+
+/// Writes everything that is made of a recording.
+///
+/// # Errors
+/// If it cannot be read, or a file cannot be written.
+pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
+    write(&arguments.recording)?;
+    if let Some(path) = &arguments.into {
+        let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        let parts = text.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
+        let Some((before, after)) = parts else {
+            bail!("{}: there are no marks {BEGIN} and {END}", path.display());
+        };
+        let tables = std::fs::read_to_string(arguments.recording.join("tables.md"))?;
+        write_whole(path, format!("{before}{BEGIN}\n\n{tables}\n{END}{after}").as_bytes())?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Writes `tables.md`, `speed-and-correctness.svg` and `.png`, and `index.html`.
+///
+/// # Errors
+/// As [`run`].
+pub(super) fn write(folder: &Path) -> Result<()> {
+    let recording = Recording::read(folder)?;
+    let mut tables = vec![recording.conformance_table()];
+    tables.extend(recording.rank_tables());
+    tables.push(recording.wrong_table());
+    tables.push(recording.engine_table());
+    let text: Vec<String> = tables.iter().map(Table::markdown).collect();
+    write_whole(
+        &folder.join("tables.md"),
+        format!("{}\n{}", heading(&recording), text.join("\n")).as_bytes(),
+    )?;
+    let figure = barometer_figure(&points(&recording))?;
+    write_whole(&folder.join("speed-and-correctness.svg"), figure.svg.as_bytes())?;
+    write_whole(&folder.join("speed-and-correctness.png"), &figure.png)?;
+    let mut environment = Environment::new();
+    environment.add_template("page.html", PAGE)?;
+    let rows: Vec<_> = tables
+        .iter()
+        .map(|Table { title, words, head, rows }| context! { title, words, head, rows })
+        .collect();
+    let page = environment.get_template("page.html")?.render(context! {
+        heading => heading(&recording),
+        svg => figure.svg,
+        caption => figure.caption,
+        tables => rows,
+    })?;
+    write_whole(&folder.join("index.html"), page.as_bytes())
+}
+
+fn heading(recording: &Recording) -> String {
+    let about = &recording.about;
+    let date = if about.date.is_empty() { "no date" } else { &about.date };
+    format!(
+        "Recorded on {date}, on {} CPUs of {}, {} rounds. Each engine has one thread. Times hold for this machine.\n",
+        about.cpus, about.cpu, about.rounds
+    )
+}
+
+/// Engines that are given samples and are ranked by time.
+fn points(recording: &Recording) -> Vec<EnginePoint> {
+    let ranking = recording.ranking(Quantity::Time, Takes::Samples);
+    let right = |engine: &str| {
+        let row = recording.conformance.iter().find(|row| row.engine == engine)?;
+        (row.grids > 0).then(|| row.right as f64 / row.grids as f64)
+    };
+    let ours = |engine: &str| recording.engines.iter().any(|row| row.engine == engine && row.ours);
+    let point = |standing: &isostudy_barometer::ranks::Standing| {
+        Some(EnginePoint {
+            name: standing.engine.clone(),
+            time: [standing.score, standing.low, standing.high],
+            right: right(&standing.engine)?,
+            ours: ours(&standing.engine),
+        })
+    };
+    ranking.standings.iter().filter_map(point).collect()
+}
