@@ -250,7 +250,7 @@ impl<'a> Asked<'a> {
             let truth = self.truth(sampled, engine);
             let about = serde_json::json!({
                 "counts": counts, "origin": origin, "spacing": spacing, "isovalue": isovalue, "smooth": is_smooth,
-                "truth": truth,
+                "truth": truth, "soup": engine.soup,
             });
             std::fs::write(at(format!("{i}.{}.json", engine.id)), about.to_string())?;
             let mut file = Vec::new();

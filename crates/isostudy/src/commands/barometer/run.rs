@@ -13,7 +13,8 @@ use clap::Args;
 use isostudy_barometer::engine::Engine;
 use isostudy_barometer::packed::{Conformance, Packed};
 use isostudy_barometer::recording::{About, ConformanceRow, EngineRow, Row, State, write};
-use isostudy_program::{Program, Request, Samples};
+use isostudy_mesh::{TriangleMesh, write_ply};
+use isostudy_program::{Program, Request, Samples, write_samples};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use serde::de::DeserializeOwned;
@@ -295,6 +296,9 @@ fn conformance(
                     Ok(answer) => {
                         let mesh = answer.mesh.unwrap_or_default();
                         packed.check(&mesh, engine.ties, engine.soup, volume as u64, &mut found);
+                        if volume == 0 && !found.wrong.is_empty() {
+                            keep_grids(out, engine, packed, &found, &mesh)?;
+                        }
                     }
                     Err(error) => {
                         failed = error.to_string().lines().next().unwrap_or_default().to_owned();
@@ -317,6 +321,25 @@ fn conformance(
         rows.push(row);
     }
     Ok((rows, with_tunnels))
+}
+
+/// Keeps the mesh of the first volume of grids, for whoever wants to see what is wrong.
+fn keep_grids(
+    out: &Path,
+    engine: &Engine,
+    packed: &Packed,
+    found: &Conformance,
+    mesh: &TriangleMesh,
+) -> Result<()> {
+    let folder = out.join("wrong/random-grids");
+    std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    write_samples(&folder.join("0.f32"), packed.values())?;
+    let grids: Vec<u64> = found.wrong.iter().map(|[_, grid]| *grid).collect();
+    let about = serde_json::json!({ "samples": packed.samples(), "grids": grids, "soup": engine.soup });
+    write_whole(&folder.join(format!("{}.json", engine.id)), about.to_string().as_bytes())?;
+    let mut file = Vec::new();
+    write_ply(mesh, &mut file)?;
+    write_whole(&folder.join(format!("{}.ply", engine.id)), &file)
 }
 
 /// The ratio of an engine's times in two processes, from the 5th to the 95th percentile over workloads.

@@ -8,6 +8,7 @@ use isostudy_barometer::engine::Takes;
 use isostudy_barometer::ranks::{Quantity, Ranking, rank};
 use isostudy_barometer::recording::{About, ConformanceRow, EngineRow, Row, State, read};
 use isostudy_barometer::workload::Group;
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::fmt::Write;
 use std::fs::File;
@@ -60,6 +61,16 @@ pub(super) struct Recording {
     pub(super) rows: Vec<Row>,
     pub(super) engines: Vec<EngineRow>,
     pub(super) conformance: Vec<ConformanceRow>,
+    /// What the second check found; none where it was not run.
+    pub(super) confirmed: Vec<Confirmed>,
+}
+
+/// A wrong verdict, and whether `scripts/barometer/confirm.py` finds the mesh wrong too.
+#[derive(Debug, Deserialize)]
+pub(super) struct Confirmed {
+    workload: String,
+    engine: String,
+    confirmed: String,
 }
 
 /// A table for people.
@@ -110,6 +121,10 @@ impl Recording {
             rows: rows(&folder.join("measurements.csv"))?,
             engines: rows(&folder.join("engines.csv"))?,
             conformance: rows(&folder.join("conformance.csv"))?,
+            confirmed: match folder.join("confirmed.csv") {
+                path if path.is_file() => rows(&path)?,
+                _ => Vec::new(),
+            },
         };
         if found.rows.is_empty() {
             bail!("{}: there are no measurements", folder.display());
@@ -237,10 +252,23 @@ impl Recording {
 
     /// What is wrong, where.
     pub(super) fn wrong_table(&self) -> Table {
-        let rows = self.rows.iter().filter(|row| matches!(row.state, State::Wrong | State::Failed));
+        let is_confirmed = |row: &&Row| {
+            let is_it = |of: &&Confirmed| of.workload == row.workload && of.engine == row.engine;
+            self.confirmed.iter().find(is_it).is_some_and(|of| of.confirmed == "yes")
+        };
+        let wrong: Vec<&Row> = self.rows.iter().filter(|row| row.state == State::Wrong).collect();
+        let confirmed: Vec<&Row> = wrong.iter().copied().filter(|row| is_confirmed(row)).collect();
+        let failed = self.rows.iter().filter(|row| row.state == State::Failed);
+        let words = format!(
+            "Of {} wrong verdicts, {} were confirmed by a second check that shares no code with the first; these are below, with answers that \
+             were no mesh. `scripts/barometer/confirm.py RECORDING WORKLOAD ENGINE` shows each.",
+            wrong.len(),
+            confirmed.len()
+        );
+        let rows = confirmed.into_iter().chain(failed);
         Table {
             title: "What is wrong".into(),
-            words: "Each mesh that is not what the workload says, and each answer that was no mesh.".into(),
+            words,
             head: vec!["workload", "engine", "what"],
             rows: rows
                 .map(|row| vec![row.workload.clone(), self.name(&row.engine), row.faults.clone()])
