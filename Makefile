@@ -8,7 +8,7 @@ ifndef SEED
 SEED := $(shell od -An -N4 -tu4 /dev/urandom | tr -d ' ')
 endif
 
-.PHONY: help study test test-long attacks quick terrain families bench bench-sweep figures check bunny three viewer-library cgal wheel clean
+.PHONY: help study test test-long attacks quick terrain families bench bench-sweep barometer barometer-quick figures check bunny three viewer-library cgal wheel clean
 
 help: ## list these entries
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 11
@@ -51,6 +51,27 @@ cache/methods/installed: scripts/methods/requirements.txt
 	python3 -m venv cache/methods
 	if cache/methods/bin/pip install --quiet --requirement scripts/methods/requirements.txt; then touch $@; \
 	else echo "VTK could not be installed: its methods are left out" >&2; fi
+
+BAROMETER = cargo build --release --locked --package isostudy && target/release/isostudy barometer run configs/barometer --allow-programs --date $(shell date +%F)
+
+barometer: cache/engines/installed target/peers/release/peers-worker ## judge and time 40 extractors on 60 workloads, into results/barometer/; a run that was killed goes on
+	scripts/fetch-samples.sh >/dev/null || true
+	$(BAROMETER) -o results/barometer
+	cache/engines/bin/python scripts/barometer/confirm.py results/barometer || true
+	target/release/isostudy barometer report results/barometer
+
+barometer-quick: cache/engines/installed target/peers/release/peers-worker ## the same of the 15 fastest extractors on 23 workloads, into results/barometer-quick/
+	$(BAROMETER) --quick -o results/barometer-quick
+	cache/engines/bin/python scripts/barometer/confirm.py results/barometer-quick || true
+	target/release/isostudy barometer report results/barometer-quick
+
+cache/engines/installed: scripts/methods/requirements-barometer.txt scripts/methods/requirements.txt
+	python3 -m venv cache/engines
+	if cache/engines/bin/pip install --quiet --requirement scripts/methods/requirements-barometer.txt scipy; then touch $@; \
+	else echo "some engines could not be installed: the barometer goes on without them" >&2; fi
+
+target/peers/release/peers-worker: scripts/peers/Cargo.toml $(wildcard scripts/peers/src/*.rs)
+	cargo build --release --quiet --manifest-path scripts/peers/Cargo.toml --target-dir target/peers
 
 cgal: cache/methods/cgal-surface-mesher ## build CGAL's surface mesher, a program of its own (Debian: apt install libcgal-dev)
 

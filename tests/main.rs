@@ -4,6 +4,7 @@ mod adaptive;
 mod answers;
 mod any_method;
 mod asking;
+mod barometer;
 mod bench;
 mod command;
 mod continuation;

@@ -1,0 +1,164 @@
+//! `isostudy barometer`: our own engines are right, engines that were made wrong on purpose are found, and recordings are compared.
+
+use crate::command::{self, Run};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+const ISOSTUDY: &str = env!("CARGO_BIN_EXE_isostudy");
+
+fn isostudy(arguments: &[&str]) -> Run {
+    Run::of(command::isostudy().args(arguments).current_dir(std::env::temp_dir()))
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The workloads of this repository, with engines of a test.
+fn folder(at: &Path, engines: &[(String, Vec<String>)]) -> PathBuf {
+    let folder = at.join("barometer");
+    std::fs::create_dir_all(&folder).unwrap();
+    for group in ["curated", "reported", "hard", "grown", "chunks"] {
+        let name = format!("{group}.toml");
+        std::fs::copy(root().join("configs/barometer").join(&name), folder.join(&name)).unwrap();
+    }
+    let mut text = String::new();
+    for (id, command) in engines {
+        let ours = id == "mc";
+        writeln!(
+            text,
+            "[[engines]]\nid = {id:?}\nname = {id:?}\nlicense = \"MIT\"\ninstall = \"here\"\ncommand = {command:?}\n\
+             takes = \"samples\"\nties = \"outside\"\nfamily = \"cubes\"\nours = {ours}\nquick = true"
+        )
+        .unwrap();
+    }
+    std::fs::write(folder.join("engines.toml"), text).unwrap();
+    folder
+}
+
+fn own(method: &str) -> (String, Vec<String>) {
+    (method.to_owned(), [ISOSTUDY, "barometer", "engine", method].map(str::to_owned).to_vec())
+}
+
+/// State and faults by workload and engine.
+fn measured(out: &Path) -> BTreeMap<(String, String), (String, String)> {
+    let mut reader = csv::Reader::from_path(out.join("measurements.csv")).unwrap();
+    let rows = reader.records().map(|row| row.unwrap());
+    rows.map(|row| ((row[0].into(), row[2].into()), (row[3].into(), row[4].into()))).collect()
+}
+
+/// Every method is right on what is quick, but for what it does not promise: duals with one vertex per cell are no manifolds where sheets
+/// share a cell, and only `mc33` has the topology of random samples.
+#[test]
+fn our_own_engines_are_right() {
+    let place = tempfile::tempdir().unwrap();
+    let methods = ["mc", "mc33", "nets-manifold", "si", "bi"];
+    let folder = folder(place.path(), &methods.map(own));
+    let out = place.path().join("out");
+    let arguments = [
+        "barometer",
+        "run",
+        folder.to_str().unwrap(),
+        "--quick",
+        "--rounds",
+        "1",
+        "-o",
+        out.to_str().unwrap(),
+    ];
+    let refused = isostudy(&arguments);
+    assert_eq!(refused.code, Some(2), "programs run where they are allowed alone: {}", refused.stderr);
+    assert!(refused.stderr.contains("--allow-programs"), "{}", refused.stderr);
+    let run = isostudy(&[&arguments[..], &["--allow-programs"]].concat());
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let found = measured(&out);
+    assert_eq!(found.len(), 23 * methods.len());
+    for ((workload, engine), (state, faults)) in &found {
+        if workload != "random-12" || engine == "mc33" {
+            assert_eq!(state, "right", "{engine} on {workload}: {faults}");
+        }
+    }
+    let conformance = std::fs::read_to_string(out.join("conformance.csv")).unwrap();
+    let of = |engine: &str| -> Vec<u64> {
+        let line = conformance.lines().find(|line| line.starts_with(&format!("{engine},"))).unwrap();
+        line.split(',').skip(1).take(4).map(|cell| cell.parse().unwrap()).collect()
+    };
+    assert_eq!(of("mc33"), [2000; 4], "all grids have the exact topology");
+    for engine in methods {
+        assert_eq!((of(engine)[0], of(engine)[3]), (2000, 2000), "{engine} makes closed manifolds");
+    }
+    assert!(of("mc")[1] < 1000, "marching cubes promises no such topology");
+    for file in [
+        "index.html",
+        "tables.md",
+        "speed-and-correctness.svg",
+        "speed-and-correctness.png",
+        "engines.csv",
+        "about.toml",
+    ] {
+        assert!(out.join(file).metadata().unwrap().len() > 100, "{file}");
+    }
+
+    // Nothing is done again, and the files stay.
+    let before = std::fs::read(out.join("measurements.csv")).unwrap();
+    let again = isostudy(&arguments);
+    assert_eq!(again.code, Some(0), "{}", again.stderr);
+    assert!(!again.stderr.contains("1 of 23"), "{}", again.stderr);
+    assert_eq!(std::fs::read(out.join("measurements.csv")).unwrap(), before);
+
+    let out = out.to_str().unwrap();
+    let compared = isostudy(&["barometer", "compare", out, out]);
+    assert_eq!(compared.code, Some(0), "a recording agrees with itself: {}", compared.stderr);
+    let ranks =
+        isostudy(&["barometer", "rank", out, "--group", "chunks", "--engine", "mc", "--engine", "mc33"]);
+    assert!(
+        ranks.stdout.contains("over the 2 workloads") && !ranks.stdout.contains("| si |"),
+        "{}",
+        ranks.stdout
+    );
+    let unknown = isostudy(&["barometer", "rank", out, "--engine", "mc34"]);
+    assert!(unknown.code == Some(2) && unknown.stderr.contains("mc34"), "{}", unknown.stderr);
+}
+
+/// One flipped triangle, one lost, open seams, half a cell of displacement: each is found on each workload, and gets no rank. The adapter
+/// itself spoils nothing.
+#[test]
+fn engines_that_were_made_wrong_are_found() {
+    let place = tempfile::tempdir().unwrap();
+    let script = root().join("tests/spoiled_engine.py");
+    let spoiled = |way: &str| {
+        let command = ["python3", script.to_str().unwrap(), way, ISOSTUDY, "barometer", "engine", "mc"];
+        (way.to_owned(), command.map(str::to_owned).to_vec())
+    };
+    let ways = ["flipped", "lost", "seams", "shifted"];
+    let engines: Vec<_> = [own("mc"), spoiled("whole")].into_iter().chain(ways.map(spoiled)).collect();
+    let folder = folder(place.path(), &engines);
+    let out = place.path().join("out");
+    let mut arguments = vec!["barometer", "run", folder.to_str().unwrap(), "--quick", "--rounds", "1", "-o"];
+    arguments.extend([out.to_str().unwrap(), "--allow-programs"]);
+    let workloads = ["sphere", "torus", "gyroid", "terrain-hills", "unequal-steps", "large-offset"];
+    workloads.iter().for_each(|workload| arguments.extend(["--workload", workload]));
+    let run = isostudy(&arguments);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let found = measured(&out);
+    let words = [
+        ("flipped", "misoriented"),
+        ("lost", "boundary"),
+        ("seams", "boundary"),
+        ("shifted", "displacement"),
+    ];
+    for workload in workloads {
+        let of = |engine: &str| &found[&(workload.to_owned(), engine.to_owned())];
+        assert_eq!((of("mc").0.as_str(), of("whole").0.as_str()), ("right", "right"), "{workload}");
+        for (way, word) in words {
+            let (state, faults) = of(way);
+            assert!(state == "wrong" && faults.contains(word), "{way} on {workload}: {state}: {faults}");
+        }
+    }
+    let tables = std::fs::read_to_string(out.join("tables.md")).unwrap();
+    let ranks: Vec<&str> = tables.split("### ").filter(|table| table.starts_with("By ")).collect();
+    assert!(!ranks.is_empty() && ranks.iter().all(|table| table.contains("| whole |")), "{tables}");
+    for way in ways {
+        assert!(ranks.iter().all(|table| !table.contains(&format!("| {way} |"))), "{way}: {tables}");
+    }
+}
