@@ -164,7 +164,7 @@ impl Recording {
         let count = ranking.workloads.len();
         let mut words = format!(
             "1 would be the best on each workload. Scores are geometric means over the {count} workloads that all of these engines passed; \
-             intervals are at 95 % over workloads. Engines that are not told apart share a rank."
+             intervals are at 95 % over workloads. Engines that are not distinguished share a rank."
         );
         if quantity == Quantity::Time {
             let [low, high] = self.about.noise;
