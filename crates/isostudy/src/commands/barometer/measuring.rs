@@ -21,6 +21,8 @@ pub(super) struct Running<'a> {
     pub(super) worker: Option<Worker>,
     /// Resident before the first request.
     pub(super) resting_bytes: u64,
+    /// Whether it is the second process of an engine, which is there for noise alone.
+    pub(super) is_second: bool,
     /// Seconds per sample of the slowest answer on a grid that is not small.
     seconds_a_sample: f64,
 }
@@ -36,7 +38,14 @@ impl<'a> Running<'a> {
     pub(super) fn start(engine: &'a Engine, program: Program) -> Result<Self, ProgramError> {
         let worker = Worker::start(&program)?;
         let resting_bytes = status_bytes(&worker, "VmRSS").unwrap_or_default();
-        Ok(Self { engine, program, worker: Some(worker), resting_bytes, seconds_a_sample: 0.0 })
+        Ok(Self {
+            engine,
+            program,
+            worker: Some(worker),
+            resting_bytes,
+            is_second: false,
+            seconds_a_sample: 0.0,
+        })
     }
 
     /// Asks, starting the program again if its last answer ended it.
@@ -125,13 +134,17 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// Judges and times all engines; `second` is another process of the first that is ours, which says what is noise.
+    /// Judges and times all engines.
     pub(super) fn measure(
         &self,
         engines: &mut [Running],
         rounds: u32,
         random: &mut Pcg64,
     ) -> Result<Vec<Row>> {
+        // What an earlier run kept is of other engines, or of other samples.
+        if self.wrong.exists() {
+            std::fs::remove_dir_all(&self.wrong).with_context(|| self.wrong.display().to_string())?;
+        }
         let mut rows = Vec::new();
         for running in engines.iter_mut() {
             rows.push(self.judge(running)?);
@@ -235,7 +248,9 @@ impl<'a> Asked<'a> {
         if !verdict.is_right() {
             row.state = State::Wrong;
             row.faults = verdict.faults.iter().map(in_words).collect::<Vec<_>>().join("; ");
-            self.keep(engine, &meshes)?;
+            if !running.is_second {
+                self.keep(engine, &meshes)?;
+            }
         }
         Ok(row)
     }

@@ -220,10 +220,11 @@ impl Recording {
             cells.extend(counts.map(|count| count.to_string()));
             match of(engine) {
                 Some(row) if row.failed.is_empty() => {
+                    cells.push(grouped(row.grids));
                     let parts = [row.same_topology, row.closed_manifold, row.right];
                     cells.extend(parts.map(|part| share(part, row.grids)));
                 }
-                _ => cells.extend(["failed".into(), String::new(), String::new()]),
+                _ => cells.extend(["failed".into(), String::new(), String::new(), String::new()]),
             }
             cells
         });
@@ -231,7 +232,7 @@ impl Recording {
         Table {
             title: "Who is right".into(),
             words: format!(
-                "Of the workloads: those with the right mesh, a wrong one, none, and not asked. Of {grids} random grids of 4 x 4 x 4 samples: \
+                "Of the workloads: those with the right mesh, a wrong one, none, and not asked. Of up to {grids} random grids of 4 x 4 x 4 samples, as many as it can do in a minute: \
                  those with the exact topology of the trilinear interpolant, those whose mesh is a closed manifold, and those with both. \
                  {tunnels} of these grids have a cell with a tunnel. A method that promises no such topology is not wrong to lack it. \
                  Engines with an asterisk are made by the makers of the barometer."
