@@ -54,24 +54,27 @@ cache/methods/installed: scripts/methods/requirements.txt
 
 BAROMETER = cargo build --release --locked --package isostudy && target/release/isostudy barometer run configs/barometer --allow-programs --date $(shell date +%F)
 
-barometer: cache/engines/installed target/peers/release/peers-worker ## judge and time 40 extractors on 60 workloads, into results/barometer/; a run that was killed goes on
-	scripts/fetch-samples.sh >/dev/null || true
+barometer: bunny cache/engines/installed target/peers/release/peers-worker ## judge and time 40 extractors on 60 workloads, into results/barometer/; a run that was killed goes on
+	-scripts/fetch-samples.sh >/dev/null
 	$(BAROMETER) -o results/barometer
-	cache/engines/bin/python scripts/barometer/confirm.py results/barometer || true
+	-cache/engines/bin/python scripts/barometer/confirm.py results/barometer >results/barometer/confirm.log
 	target/release/isostudy barometer report results/barometer
 
-barometer-quick: cache/engines/installed target/peers/release/peers-worker ## the same of the 15 fastest extractors on 23 workloads, into results/barometer-quick/
+barometer-quick: bunny cache/engines/installed target/peers/release/peers-worker ## the same of the 15 fastest extractors on 23 workloads, into results/barometer-quick/
 	$(BAROMETER) --quick -o results/barometer-quick
-	cache/engines/bin/python scripts/barometer/confirm.py results/barometer-quick || true
+	-cache/engines/bin/python scripts/barometer/confirm.py results/barometer-quick >results/barometer-quick/confirm.log
 	target/release/isostudy barometer report results/barometer-quick
 
 cache/engines/installed: scripts/methods/requirements-barometer.txt scripts/methods/requirements.txt
 	python3 -m venv cache/engines
-	if cache/engines/bin/pip install --quiet --requirement scripts/methods/requirements-barometer.txt scipy; then touch $@; \
-	else echo "some engines could not be installed: the barometer goes on without them" >&2; fi
+	cache/engines/bin/pip install --quiet scipy
+	@# One by one: an engine that cannot be had takes no other one with it.
+	@grep -hE '^[A-Za-z]' scripts/methods/requirements.txt scripts/methods/requirements-barometer.txt | while read -r engine; do \
+	cache/engines/bin/pip install --quiet "$$engine" || echo "$$engine could not be installed: the barometer goes on without it" >&2; done
+	touch $@
 
 target/peers/release/peers-worker: scripts/peers/Cargo.toml $(wildcard scripts/peers/src/*.rs)
-	cargo build --release --quiet --manifest-path scripts/peers/Cargo.toml --target-dir target/peers
+	-cargo build --release --quiet --manifest-path scripts/peers/Cargo.toml --target-dir target/peers
 
 cgal: cache/methods/cgal-surface-mesher ## build CGAL's surface mesher, a program of its own (Debian: apt install libcgal-dev)
 

@@ -31,6 +31,31 @@ pub enum Takes {
     Field,
 }
 
+/// Which grids an engine takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Grids {
+    /// All.
+    #[default]
+    All,
+    /// With the same step along each axis.
+    EqualSteps,
+    /// With the same step and as many samples along each axis.
+    Cubes,
+}
+
+impl Grids {
+    /// Whether a grid is among them.
+    pub fn contain(self, counts: [usize; 3], spacing: [f64; 3]) -> bool {
+        let is_equal = spacing.iter().all(|step| (step / spacing[0] - 1.0).abs() < 1e-6);
+        match self {
+            Self::All => true,
+            Self::EqualSteps => is_equal,
+            Self::Cubes => is_equal && counts.iter().all(|&count| count == counts[0]),
+        }
+    }
+}
+
 /// An extractor, as its adapter's table says.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -52,6 +77,9 @@ pub struct Engine {
     /// Whether it closes the surface at the sides of the box.
     #[serde(default)]
     pub closes: bool,
+    /// What grids it takes; all, if nothing is said.
+    #[serde(default)]
+    pub grids: Grids,
     /// Whether triangles share no vertices, so that those at one place are taken for one before it is judged.
     #[serde(default)]
     pub soup: bool,

@@ -13,7 +13,7 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
 use crate::engine::Ties;
-use crate::judge::{SAME_PLACE, welded};
+use crate::judge::welded;
 
 /// Random samples along each side of a grid.
 pub const SIDE: usize = 4;
@@ -38,7 +38,7 @@ pub struct Conformance {
     pub right: u64,
     /// Those with the right number of pieces, of the right Euler characteristic.
     pub same_topology: u64,
-    /// Those whose mesh is a closed manifold.
+    /// Those whose mesh is a closed, oriented manifold, of whatever topology.
     pub closed_manifold: u64,
     /// The first few that are wrong, by volume and number within it.
     pub wrong: Vec<[u64; 2]>,
@@ -104,7 +104,7 @@ impl Packed {
     /// # Panics
     /// If a triangle's index is out of range.
     pub fn check(&self, mesh: &TriangleMesh, ties: Ties, soup: bool, volume: u64, found: &mut Conformance) {
-        let mesh = if soup { welded(mesh, SAME_PLACE) } else { mesh.clone() };
+        let mesh = if soup { welded(mesh, 1.0) } else { mesh.clone() };
         let mut parts: BTreeMap<usize, TriangleMesh> = BTreeMap::new();
         let mut numbers: BTreeMap<(usize, u32), u32> = BTreeMap::new();
         for &[a, b, c] in mesh.triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a) {

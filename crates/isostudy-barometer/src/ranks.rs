@@ -1,9 +1,9 @@
 //! Engines in order.
 //!
 //! A score is the geometric mean, over workloads, of an engine's number over the least of all compared engines there: 1 is first
-//! everywhere. Only workloads count that all compared engines passed. Intervals resample workloads, since these are what a reader's own
-//! work differs in. Two engines are told apart where the interval of the ratio of their scores leaves 1 out. All that lies between two
-//! engines that are not told apart shares their rank.
+//! everywhere. Only workloads count that all compared engines passed. Intervals resample surfaces, since these are what a reader's own
+//! work differs in; workloads of one surface stay together. Two engines are distinguished where the interval of the ratio of their scores
+//! leaves 1 out, and what one engine differs from itself by. All that lies between two engines that are not distinguished shares their rank.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,8 +15,10 @@ use crate::recording::{Row, State};
 
 /// How often workloads are drawn again.
 const DRAWS: usize = 4000;
-/// Fewer workloads than this are no basis for an interval.
-const LEAST_WORKLOADS: usize = 5;
+/// Fewer surfaces than this are no basis for an interval.
+const LEAST_SURFACES: usize = 6;
+/// Errors below this, in cells, are rounding.
+const LEAST_ERROR: f64 = 1e-3;
 
 /// What engines are ranked by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -58,7 +60,7 @@ impl Quantity {
             Self::Triangles => row.triangles.map(|count| count as f64),
             Self::RadiusRatio => row.radius_ratio.map(f64::recip),
             // A surface of the second order halves its error with twice the triangles.
-            Self::ErrorAtEqualTriangles => Some(row.off_cells? * row.triangles? as f64),
+            Self::ErrorAtEqualTriangles => Some(row.off_cells?.max(LEAST_ERROR) * row.triangles? as f64),
         };
         value.filter(|value| *value > 0.0 && value.is_finite())
     }
@@ -95,8 +97,8 @@ pub struct Ranking {
 }
 
 /// Ranks the engines of some rows. With `least_share`, an engine that passed fewer workloads than this share of those that anybody passed is
-/// left out, so that the others are compared on more.
-pub fn rank(rows: &[Row], quantity: Quantity, least_share: f64, seed: u64) -> Ranking {
+/// left out, so that the others are compared on more. Scores whose ratio is below `noise` are not distinguished; 1 if there is none.
+pub fn rank(rows: &[Row], quantity: Quantity, least_share: f64, noise: f64, seed: u64) -> Ranking {
     let mut numbers: BTreeMap<&str, BTreeMap<&str, f64>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.state == State::Right) {
         if let Some(value) = quantity.of(row) {
@@ -123,28 +125,41 @@ pub fn rank(rows: &[Row], quantity: Quantity, least_share: f64, seed: u64) -> Ra
             values.iter().map(|value| (value / least).ln()).collect()
         })
         .collect();
+    // Workloads of one surface, by number.
+    let mut surfaces: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (i, workload) in common.iter().enumerate() {
+        let surface = rows.iter().find(|row| row.workload == *workload).map_or(*workload, |row| &row.surface);
+        surfaces.entry(surface).or_default().push(i);
+    }
+    let surfaces: Vec<Vec<usize>> = surfaces.into_values().collect();
     let workloads = common.iter().map(|&workload| workload.to_owned()).collect();
-    let (standings, told) = stand(&kept, &logs, seed);
+    let (standings, told) = stand(&kept, &logs, &surfaces, noise.ln(), seed);
     Ranking { quantity, workloads, standings, left_out, told }
 }
 
-fn stand(engines: &[&str], logs: &[Vec<f64>], seed: u64) -> (Vec<Standing>, BTreeSet<(String, String)>) {
+fn stand(
+    engines: &[&str],
+    logs: &[Vec<f64>],
+    surfaces: &[Vec<usize>],
+    noise: f64,
+    seed: u64,
+) -> (Vec<Standing>, BTreeSet<(String, String)>) {
     let count = logs.len();
     if count == 0 {
         return Default::default();
     }
-    let mean = |of: &dyn Fn(usize) -> usize| -> Vec<f64> {
-        let sum = |e: usize| (0..count).map(|i| logs[of(i)][e]).sum::<f64>();
-        (0..engines.len()).map(|e| sum(e) / count as f64).collect()
+    let mean = |of: &[usize]| -> Vec<f64> {
+        let sum = |e: usize| of.iter().map(|&i| logs[i][e]).sum::<f64>();
+        (0..engines.len()).map(|e| sum(e) / of.len() as f64).collect()
     };
-    let scores = mean(&|i| i);
+    let scores = mean(&(0..count).collect::<Vec<_>>());
     let mut order: Vec<usize> = (0..engines.len()).collect();
     order.sort_by(|&a, &b| scores[a].total_cmp(&scores[b]).then(engines[a].cmp(engines[b])));
     let mut random = Pcg64::seed_from_u64(seed);
     let draws: Vec<Vec<f64>> = (0..DRAWS)
         .map(|_| {
-            let drawn: Vec<usize> = (0..count).map(|_| random.random_range(0..count)).collect();
-            mean(&|i| drawn[i])
+            let drawn = (0..surfaces.len()).flat_map(|_| &surfaces[random.random_range(0..surfaces.len())]);
+            mean(&drawn.copied().collect::<Vec<_>>())
         })
         .collect();
     let interval = |of: &dyn Fn(&[f64]) -> f64| {
@@ -153,9 +168,10 @@ fn stand(engines: &[&str], logs: &[Vec<f64>], seed: u64) -> (Vec<Standing>, BTre
         let at = |share: f64| values[((share * DRAWS as f64) as usize).min(DRAWS - 1)];
         [at(0.025), at(0.975)]
     };
-    // Few workloads tell nothing, however much alike they are.
-    let is_told =
-        |a: usize, b: usize| count >= LEAST_WORKLOADS && interval(&|draw| draw[b] - draw[a])[0] > 0.0;
+    // Few surfaces tell nothing, however much alike they are.
+    let is_told = |a: usize, b: usize| {
+        surfaces.len() >= LEAST_SURFACES && interval(&|draw| draw[b] - draw[a])[0] > noise.max(0.0)
+    };
     let mut told = BTreeSet::new();
     // The last place whose rank is that of each place.
     let mut ends: Vec<usize> = (0..order.len()).collect();
@@ -190,6 +206,7 @@ mod tests {
         Row {
             workload: format!("w{workload}"),
             group: Group::Curated,
+            surface: format!("w{workload}"),
             engine: engine.into(),
             state: if time.is_some() { State::Right } else { State::Wrong },
             faults: String::new(),
@@ -198,6 +215,7 @@ mod tests {
             low_s: time,
             high_s: time,
             rounds: 3,
+            judged_s: None,
             memory_bytes: None,
             radius_ratio: Some(0.5),
             off_cells: Some(0.1),
@@ -214,16 +232,32 @@ mod tests {
             rows.push(row("b", w, Some(2.0 * wobble)));
             rows.push(row("c", w, Some(2.0 / wobble)));
         }
-        let ranking = rank(&rows, Quantity::Time, 0.5, 1);
+        let ranking = rank(&rows, Quantity::Time, 0.5, 1.0, 1);
         let ranks: Vec<u32> = ranking.standings.iter().map(|of| of.rank).collect();
         assert_eq!(ranks, [1, 2, 2], "{ranking:?}");
         assert_eq!(ranking.standings[0].score, 1.0);
         assert!((ranking.standings[1].score - 2.0).abs() < 0.1);
         assert_eq!(ranking.told.len(), 2);
-        assert_eq!(rank(&rows, Quantity::Time, 0.5, 1), ranking, "the same seed");
+        assert_eq!(rank(&rows, Quantity::Time, 0.5, 1.0, 1), ranking, "the same seed");
         // All have as many triangles.
-        let ranking = rank(&rows, Quantity::Triangles, 0.5, 1);
+        let ranking = rank(&rows, Quantity::Triangles, 0.5, 1.0, 1);
         assert!(ranking.standings.iter().all(|of| of.rank == 1) && ranking.told.is_empty());
+    }
+
+    /// Twenty workloads of three surfaces are three; and what an engine differs from itself by distinguishes nothing.
+    #[test]
+    fn one_surface_many_times_is_one() {
+        let rows: Vec<Row> = (0..20)
+            .flat_map(|w| [row("a", w, Some(1.0)), row("b", w, Some(1.02 + (w % 3) as f64 / 100.0))])
+            .collect();
+        assert_eq!(rank(&rows, Quantity::Time, 0.5, 1.0, 1).told.len(), 1);
+        assert!(rank(&rows, Quantity::Time, 0.5, 1.05, 1).told.is_empty(), "within the noise");
+        let of_three = |row: Row| Row {
+            surface: format!("s{}", row.workload.len() + row.workload.ends_with('1') as usize),
+            ..row
+        };
+        let rows: Vec<Row> = rows.into_iter().map(of_three).collect();
+        assert!(rank(&rows, Quantity::Time, 0.5, 1.0, 1).told.is_empty());
     }
 
     /// A wrong mesh gives no time, and takes its workload from all.
@@ -235,12 +269,12 @@ mod tests {
             rows.push(row("b", w, (w != 3).then_some(0.1)));
             rows.push(row("c", w, (w == 0).then_some(0.01)));
         }
-        let ranking = rank(&rows, Quantity::Time, 0.5, 1);
+        let ranking = rank(&rows, Quantity::Time, 0.5, 1.0, 1);
         assert_eq!(ranking.left_out, [("c".to_owned(), 1)]);
         assert_eq!(ranking.workloads.len(), 9);
         assert_eq!(ranking.standings[0].engine, "b");
         let few: Vec<Row> = rows.into_iter().filter(|row| row.workload == "w0").collect();
-        let ranking = rank(&few, Quantity::Time, 0.5, 1);
+        let ranking = rank(&few, Quantity::Time, 0.5, 1.0, 1);
         assert!(ranking.standings.iter().all(|of| of.rank == 1), "one workload tells nothing: {ranking:?}");
     }
 
@@ -252,7 +286,7 @@ mod tests {
                 .flat_map(|w| [row("a", w, Some(1.0)), row("b", w, Some(factor + w as f64 / 100.0))])
                 .collect()
         };
-        let ranking = |factor: f64| rank(&rows(factor), Quantity::Time, 0.5, 1);
+        let ranking = |factor: f64| rank(&rows(factor), Quantity::Time, 0.5, 1.0, 1);
         let found = Agreement::of(&ranking(2.0), &ranking(3.0));
         assert_eq!((found.same, found.opposite.len(), found.one_alone), (1, 0, 0));
         let found = Agreement::of(&ranking(2.0), &ranking(0.5));

@@ -28,6 +28,8 @@ pub struct Row {
     pub workload: String,
     /// Its group.
     pub group: Group,
+    /// The surface that it is of, which others may be of too.
+    pub surface: String,
     /// The engine.
     pub engine: String,
     /// What became of it.
@@ -44,7 +46,10 @@ pub struct Row {
     pub high_s: Option<f64>,
     /// How many rounds.
     pub rounds: u32,
-    /// Resident memory after the last extraction, the program's own aside.
+    /// Seconds of the answer that was judged, which is not in any rank.
+    pub judged_s: Option<f64>,
+    /// The most resident memory of a process that was started for this workload, with all that it started, less what it had before the request;
+    /// where it was measured.
     pub memory_bytes: Option<u64>,
     /// The mean radius ratio of triangles.
     pub radius_ratio: Option<f64>,
@@ -114,6 +119,8 @@ pub struct About {
     /// One engine in two processes: its time over its time, from the 5th to the 95th percentile over workloads. What is nearer to 1 than that
     /// is noise.
     pub noise: [f64; 2],
+    /// The same of the engine's scores over all workloads: engines nearer to each other are not distinguished by time.
+    pub noise_of_scores: f64,
     /// Random grids of the conformance table.
     pub grids: u64,
     /// Those that have a cell with a tunnel.

@@ -108,6 +108,8 @@ pub struct Workload {
     pub name: String,
     /// Why it is there.
     pub says: String,
+    /// Which surface it is of, where several workloads are of one: intervals take them for one. The id if nothing is said.
+    pub surface: Option<String>,
     /// The public thread that it came from.
     pub thread: Option<String>,
     /// The field, in x, y and z, as `isostudy extract --formula` has it.
@@ -141,6 +143,9 @@ pub struct Workload {
     /// Whether it belongs to the quick run.
     #[serde(default)]
     pub quick: bool,
+    /// Whether memory is measured on it, in a process that is started for it.
+    #[serde(default)]
+    pub memory: bool,
     /// What is known of it.
     pub truth: Truth,
 }

@@ -18,7 +18,7 @@ pub struct EnginePoint {
     pub name: String,
     /// The geometric mean of its times over the least, and the interval of that.
     pub time: [f64; 3],
-    /// The share of random grids whose topology it has exactly.
+    /// The share of workloads that it was asked for whose mesh is right.
     pub right: f64,
     /// Whether the makers of the figure made it.
     pub ours: bool,
@@ -54,7 +54,7 @@ fn draft(points: &[EnginePoint], sheet: Sheet) -> Unfinished {
         heading: "Speed and correctness".into(),
         labels: (
             "time over that of the fastest engine, geometric mean over workloads".into(),
-            "random grids with the exact topology, %".into(),
+            "workloads with the right mesh, %".into(),
         ),
         x: Axis::decades(1.0, slowest),
         y: Axis::within(0.0, 100.0),
@@ -65,6 +65,7 @@ fn draft(points: &[EnginePoint], sheet: Sheet) -> Unfinished {
     };
     panel.draw(&mut canvas, (0.0, top), (sheet.width(), top + HEIGHT));
     let caption = "Engines that are given samples and passed at least half of the workloads. Better is to the left, and up. Lines are intervals \
-                   at 95 % over workloads. An engine on the 100 % line had the exact topology of the trilinear interpolant on every random grid.";
+                   at 95 % over surfaces. A few workloads have the topology of the trilinear interpolant for their truth, which most methods do not \
+                   promise.";
     Unfinished { name: "speed-and-correctness", caption: caption.into(), canvas }
 }

@@ -39,13 +39,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
         bail!("{}: there is no such method; `isostudy methods` lists them", arguments.method);
     };
     let (name, version) = (format!("isostudy {}", preset.id), env!("CARGO_PKG_VERSION"));
-    let note = "normals are not in its time; each answer is made in new memory";
+    let note = "normals are not in its time; buffers are kept from one answer to the next, as its documentation advises";
     answer(&json!({"ready": {"name": name, "version": version, "note": note}}))?;
+    let mut extractor = Extractor::new();
     for line in std::io::stdin().lock().lines() {
         let request: Request =
             serde_json::from_str(&line?).context("a line of standard input is no request")?;
         let id = request.id;
-        match extracted(&preset.method, &request) {
+        match extracted(&preset.method, &mut extractor, &request) {
             Ok(counts) => answer(&counts)?,
             Err(error) => answer(&json!({"id": id, "failed": format!("{error:#}")}))?,
         }
@@ -59,7 +60,7 @@ fn answer(line: &serde_json::Value) -> Result<()> {
     Ok(out.flush()?)
 }
 
-fn extracted(method: &Method, request: &Request) -> Result<serde_json::Value> {
+fn extracted(method: &Method, extractor: &mut Extractor, request: &Request) -> Result<serde_json::Value> {
     let bytes = std::fs::read(&request.samples).with_context(|| request.samples.display().to_string())?;
     let values: Vec<f32> =
         bytes.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect();
@@ -73,7 +74,7 @@ fn extracted(method: &Method, request: &Request) -> Result<serde_json::Value> {
     let volume = VolumeCells { counts: request.size, values: &values, origin: request.origin, steps };
     let execution = Execution { threads: 1 };
     let start = Instant::now();
-    let found = volume.extract_interpolated(method, &mut Extractor::new(), request.isovalue, &execution)?;
+    let found = volume.extract_interpolated(method, extractor, request.isovalue, &execution)?;
     let all = start.elapsed();
     if let Some(path) = &request.mesh {
         let mut out = BufWriter::new(File::create(path).with_context(|| path.display().to_string())?);

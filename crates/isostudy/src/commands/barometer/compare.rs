@@ -25,7 +25,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
     let [one, other] = [&arguments.one, &arguments.other].map(|folder| Recording::read(folder));
     let (one, other) = (one?, other?);
-    let mut agrees = true;
+    let (mut agrees, mut told) = (true, 0);
     say("| quantity | given | told by both, in one order | in opposite order | told by one alone |")?;
     say("|---|---|---:|---:|---:|")?;
     for takes in [Takes::Samples, Takes::Field] {
@@ -33,6 +33,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
             let found = Agreement::of(&one.ranking(quantity, takes), &other.ranking(quantity, takes));
             let given = if takes == Takes::Samples { "samples" } else { "a field" };
             let (same, opposite, alone) = (found.same, found.opposite.len(), found.one_alone);
+            told += same + opposite;
             if same + opposite + alone > 0 {
                 say(&format!("| {} | {given} | {same} | {opposite} | {alone} |", quantity.words()))?;
             }
@@ -48,5 +49,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
             }
         }
     }
-    Ok(Outcome::of_check(agrees))
+    if told == 0 {
+        tell!("no pair of engines is distinguished by both recordings");
+    }
+    Ok(Outcome::of_check(agrees && told > 0))
 }

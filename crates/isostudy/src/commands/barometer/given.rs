@@ -80,25 +80,24 @@ pub(super) fn read(folder: &Path) -> Result<Given> {
     Ok(given)
 }
 
-/// The samples of each box of a workload; `None` where its volume was not fetched.
+impl Given {
+    /// The file of a workload that was not fetched.
+    pub(super) fn missing(&self, workload: &Workload) -> Option<PathBuf> {
+        let file = workload.volume.as_ref().or(workload.mesh.as_ref())?;
+        Some(self.folder.join(file)).filter(|path| !path.is_file())
+    }
+}
+
+/// The samples of each box of a workload.
 ///
 /// # Errors
-/// If its formula is none, or its volume cannot be read.
-pub(super) fn sampled(folder: &Path, workload: &Workload) -> Result<Option<Vec<Sampled>>> {
+/// If its formula is none, or its file cannot be read.
+pub(super) fn sampled(folder: &Path, workload: &Workload) -> Result<Vec<Sampled>> {
     let mut boxes = match (&workload.formula, &workload.volume, workload.random) {
         (Some(formula), _, _) => of_formula(formula, workload)?,
-        (_, Some(file), _) => {
-            let path = folder.join(file);
-            if !path.is_file() {
-                return Ok(None);
-            }
-            vec![of_volume(&path, workload)?]
-        }
+        (_, Some(file), _) => vec![of_volume(&folder.join(file), workload)?],
         (_, _, None) => {
             let path = folder.join(workload.mesh.as_deref().unwrap_or_default());
-            if !path.is_file() {
-                return Ok(None);
-            }
             let solid = closed_solid(&mesh_file::read(&path)?).with_context(|| path.display().to_string())?;
             let field = MeshDistance::try_new(&solid).with_context(|| path.display().to_string())?;
             of_field(&field, workload)
@@ -112,7 +111,7 @@ pub(super) fn sampled(folder: &Path, workload: &Workload) -> Result<Option<Vec<S
         }
         of.origin = [0, 1, 2].map(|axis| of.origin[axis] + workload.offset[axis]);
     }
-    Ok(Some(boxes))
+    Ok(boxes)
 }
 
 fn of_formula(formula: &str, workload: &Workload) -> Result<Vec<Sampled>> {
@@ -190,9 +189,11 @@ mod tests {
             if size > 100 * 100 * 100 {
                 continue;
             }
-            let Some(boxes) = sampled(&folder, workload).unwrap() else { continue };
+            if given.missing(workload).is_some() {
+                continue;
+            }
             let mut found = (0, 0, 0);
-            for of in boxes {
+            for of in sampled(&folder, workload).unwrap() {
                 // NaN is outside, as everywhere here.
                 let values: Vec<f32> = of.values.iter().map(|v| if v.is_nan() { -1.0 } else { *v }).collect();
                 let samples = Samples::try_new(of.counts, &values).unwrap();

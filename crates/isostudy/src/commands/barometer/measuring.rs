@@ -2,7 +2,7 @@
 
 use super::given::Sampled;
 use anyhow::{Context, Result};
-use isostudy_barometer::engine::Engine;
+use isostudy_barometer::engine::{Engine, Takes};
 use isostudy_barometer::recording::{Row, State};
 use isostudy_barometer::workload::{Group, Truth, Workload};
 use isostudy_barometer::{Fault, Verdict, judge};
@@ -19,33 +19,23 @@ pub(super) struct Running<'a> {
     pub(super) program: Program,
     /// Started anew where it was killed; `None` where it does not start.
     pub(super) worker: Option<Worker>,
-    /// Resident before the first request.
-    pub(super) resting_bytes: u64,
     /// Whether it is the second process of an engine, which is there for noise alone.
     pub(super) is_second: bool,
-    /// Seconds per sample of the slowest answer on a grid that is not small.
-    seconds_a_sample: f64,
+    /// Seconds per sample of its last answer on a grid that is not small; 0 before.
+    pub(super) seconds_a_sample: f64,
 }
 
 /// An engine that would take longer for an answer is not asked, so that a run ends.
 const LONGEST_S: f64 = 20.0;
-/// An engine that took longer for an answer is timed once.
+/// An engine that took longer for an answer is timed no more.
 const LONG_S: f64 = 1.0;
 /// Samples of a grid that says something about larger ones.
 const NOT_SMALL: f64 = 5e4;
 
 impl<'a> Running<'a> {
     pub(super) fn start(engine: &'a Engine, program: Program) -> Result<Self, ProgramError> {
-        let worker = Worker::start(&program)?;
-        let resting_bytes = status_bytes(&worker, "VmRSS").unwrap_or_default();
-        Ok(Self {
-            engine,
-            program,
-            worker: Some(worker),
-            resting_bytes,
-            is_second: false,
-            seconds_a_sample: 0.0,
-        })
+        let worker = Some(Worker::start(&program)?);
+        Ok(Self { engine, program, worker, is_second: false, seconds_a_sample: 0.0 })
     }
 
     /// Asks, starting the program again if its last answer ended it.
@@ -57,31 +47,24 @@ impl<'a> Running<'a> {
         self.worker.as_mut().expect("it was started").extract(request)
     }
 
-    pub(super) fn folder(&self) -> Option<PathBuf> {
-        self.worker.as_ref().map(|worker| worker.folder().to_owned())
-    }
-
-    /// Has the system forget the most memory that the process had.
-    fn forget_peak(&self) {
-        if let Some(worker) = &self.worker {
-            // Where it cannot be forgotten, the peak is that of all requests: an upper bound.
-            _ = std::fs::write(format!("/proc/{}/clear_refs", worker.process()), "5");
+    /// Learns from a row how long a larger grid will take.
+    pub(super) fn learn(&mut self, row: &Row, samples: f64) {
+        if let Some(seconds) = row.judged_s.filter(|_| samples > NOT_SMALL) {
+            self.seconds_a_sample = seconds / samples;
         }
     }
 
-    /// The most that was resident since, less what was before the first request.
-    fn peak_bytes(&self) -> Option<u64> {
-        let peak = status_bytes(self.worker.as_ref()?, "VmHWM")?;
-        Some(peak.saturating_sub(self.resting_bytes))
+    /// The most memory of a process that is started for this request, and of all that it starts, less what it had before.
+    fn memory_for(&self, request: &Request) -> Result<Option<u64>, ProgramError> {
+        let mut worker = Worker::start(&self.program)?;
+        let before = worker.memory();
+        let after = worker.extract(request)?.memory;
+        Ok(before.zip(after).map(|(before, after)| after.peak_bytes.saturating_sub(before.resident_bytes)))
     }
 }
 
-/// A line of the process's status, in bytes.
-fn status_bytes(worker: &Worker, name: &str) -> Option<u64> {
-    let status = std::fs::read_to_string(format!("/proc/{}/status", worker.process())).ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(':'))?;
-    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
-}
+/// Where a program writes its mesh, in its own folder.
+pub(super) const MESH: &str = "mesh.ply";
 
 /// A workload with its samples in files, and where to keep what is wrong.
 pub(super) struct Asked<'a> {
@@ -117,21 +100,20 @@ impl<'a> Asked<'a> {
     }
 
     /// What is known of each box: of one, what the file says; of several, what follows from its samples.
-    fn truth(&self, sampled: &Sampled, engine: &Engine) -> Truth {
+    fn truth(&self, sampled: &Sampled, engine: &Engine) -> Result<Truth> {
         if self.boxes.len() == 1 {
-            return self.workload.truth;
+            return Ok(self.workload.truth);
         }
-        let samples = isostudy_trilinear::Samples::try_new(sampled.counts, &sampled.values);
-        let surface = samples.and_then(|samples| topology(&samples, sampled.isovalue, engine.ties.into()));
-        let surface = surface.unwrap_or_default();
-        Truth {
+        let samples = isostudy_trilinear::Samples::try_new(sampled.counts, &sampled.values)?;
+        let surface = topology(&samples, sampled.isovalue, engine.ties.into())?;
+        Ok(Truth {
             components: surface.components.len() as u64,
             euler: surface.euler_characteristic(),
             boundary: surface.boundary_loops(),
             volume: None,
             area: None,
             within: self.workload.truth.within,
-        }
+        })
     }
 
     /// Judges and times all engines.
@@ -146,52 +128,74 @@ impl<'a> Asked<'a> {
             std::fs::remove_dir_all(&self.wrong).with_context(|| self.wrong.display().to_string())?;
         }
         let mut rows = Vec::new();
+        let mut answered = Vec::new();
         for running in engines.iter_mut() {
-            rows.push(self.judge(running)?);
+            let (row, counts) = self.judge(running)?;
+            rows.push(row);
+            answered.push(counts);
         }
         let mut times: Vec<Vec<f64>> = vec![Vec::new(); engines.len()];
         let mut order: Vec<usize> = (0..engines.len()).filter(|&e| rows[e].state == State::Right).collect();
-        for round in 0..rounds {
-            if round > 0 {
-                order.retain(|&e| times[e].iter().sum::<f64>() < LONG_S);
-            }
+        for _ in 0..rounds {
             order.shuffle(random);
             for &e in &order {
-                match self.time(&mut engines[e]) {
+                match self.time(&mut engines[e], answered[e]) {
                     Ok(time) => times[e].push(time),
-                    Err(error) => {
-                        rows[e].state = State::Failed;
-                        rows[e].faults = short(&error.to_string());
-                    }
+                    Err(words) => (rows[e].state, rows[e].faults) = (State::Failed, words),
                 }
             }
-            order.retain(|&e| rows[e].state == State::Right);
+            order.retain(|&e| {
+                rows[e].state == State::Right && times[e].last().is_some_and(|time| *time < LONG_S)
+            });
         }
         for (row, times) in rows.iter_mut().zip(&mut times).filter(|(row, _)| row.state == State::Right) {
             times.sort_by(f64::total_cmp);
-            let at = |share: f64| times.get((share * (times.len() - 1) as f64).round() as usize).copied();
-            (row.low_s, row.time_s, row.high_s) = (at(0.25), at(0.5), at(0.75));
+            let at = |share: f64| {
+                let place = share * (times.len() - 1) as f64;
+                let [low, high] = [place.floor(), place.ceil()].map(|i| times[i as usize]);
+                low + (high - low) * place.fract()
+            };
+            [row.low_s, row.time_s, row.high_s] = [0.25, 0.5, 0.75].map(|share| Some(at(share)));
             row.rounds = times.len() as u32;
+        }
+        if self.workload.memory {
+            for (row, running) in rows.iter_mut().zip(engines.iter()).filter(|(_, of)| !of.is_second) {
+                if row.state == State::Right {
+                    // An engine that fails now has failed at nothing that is judged.
+                    row.memory_bytes = running.memory_for(&self.request(&self.boxes[0], None)).ok().flatten();
+                }
+            }
         }
         Ok(rows)
     }
 
-    /// Seconds of all boxes, by the engine's own clock where it has one.
-    fn time(&self, running: &mut Running) -> Result<f64, ProgramError> {
-        let mut time = 0.0;
+    /// Seconds of all boxes, by the engine's own clock where it has one. An answer that is not the one that was judged has no time.
+    fn time(&self, running: &mut Running, judged: [u64; 2]) -> Result<f64, String> {
+        let (mut time, mut answered) = (0.0, [0; 2]);
         for of in &self.boxes {
             let request = Request { may_be_empty: true, ..self.request(of, None) };
-            let answer = running.ask(&request)?;
-            time += answer.extraction_s.unwrap_or_else(|| answer.wall.as_secs_f64());
+            let answer = running.ask(&request).map_err(|error| in_a_line(&error.to_string()))?;
+            time += seconds(&answer, running.engine);
+            answered = [answered[0] + answer.vertices, answered[1] + answer.triangles];
+        }
+        if answered != judged {
+            let [vertices, triangles] = answered;
+            return Err(format!(
+                "{vertices} vertices and {triangles} triangles when it was timed, {} and {} when it was judged",
+                judged[0], judged[1]
+            ));
         }
         Ok(time)
     }
 
-    fn judge(&self, running: &mut Running) -> Result<Row> {
+    /// The row, and how many vertices and triangles were answered.
+    fn judge(&self, running: &mut Running) -> Result<(Row, [u64; 2])> {
         let engine = running.engine;
+        let surface = self.workload.surface.as_ref().unwrap_or(&self.workload.id);
         let mut row = Row {
             workload: self.workload.id.clone(),
             group: self.group,
+            surface: surface.clone(),
             engine: engine.id.clone(),
             state: State::Right,
             faults: String::new(),
@@ -200,72 +204,82 @@ impl<'a> Asked<'a> {
             low_s: None,
             high_s: None,
             rounds: 0,
+            judged_s: None,
             memory_bytes: None,
             radius_ratio: None,
             off_cells: None,
         };
-        if engine.closes && self.workload.truth.boundary > 0 {
-            row.state = State::NotAsked;
-            row.faults = "it closes the surface at the sides of the box".into();
-            return Ok(row);
-        }
-        let samples: f64 = self.boxes.iter().map(|(of, _)| of.values.len() as f64).sum();
-        if running.seconds_a_sample * samples > LONGEST_S {
-            row.state = State::NotAsked;
-            row.faults = format!("it would take more than {LONGEST_S} s, by its time on a smaller grid");
-            return Ok(row);
+        let mut counts = [0; 2];
+        if let Some(why) = self.why_not(running) {
+            (row.state, row.faults) = (State::NotAsked, why);
+            return Ok((row, counts));
         }
         let mut verdict = Verdict::default();
-        let mut waited = 0.0;
         let mut meshes = Vec::new();
-        let mut memory = 0;
+        let mut judged_s = 0.0;
         for of in &self.boxes {
-            let mesh = running.folder().unwrap_or_default().join("mesh.ply");
-            running.forget_peak();
-            match running.ask(&self.request(of, Some(&mesh))) {
+            match running.ask(&self.request(of, Some(Path::new(MESH)))) {
                 Ok(answer) => {
-                    waited += answer.wall.as_secs_f64();
-                    memory = memory.max(running.peak_bytes().unwrap_or_default());
+                    judged_s += seconds(&answer, engine);
+                    counts = [counts[0] + answer.vertices, counts[1] + answer.triangles];
                     let mesh = answer.mesh.unwrap_or_default();
-                    let truth = self.truth(&of.0, engine);
+                    let truth = self.truth(&of.0, engine)?;
                     verdict.add(&judge(&mesh, &of.0.grid(), &truth, engine.ties, engine.soup));
                     meshes.push(mesh);
                 }
                 Err(error) => {
-                    row.state = State::Failed;
-                    row.faults = short(&error.to_string());
-                    return Ok(row);
+                    (row.state, row.faults) = (State::Failed, in_a_line(&error.to_string()));
+                    return Ok((row, counts));
                 }
             }
         }
-        if samples > NOT_SMALL {
-            running.seconds_a_sample = running.seconds_a_sample.max(waited / samples);
-        }
+        row.judged_s = Some(judged_s);
+        running.learn(&row, self.samples());
         row.triangles = Some(verdict.measures.triangles);
         row.radius_ratio = Some(verdict.measures.radius_ratio);
-        row.off_cells = Some(verdict.measures.off_cells);
-        row.memory_bytes = (memory > 0).then_some(memory);
+        let is_smooth = self.boxes.iter().all(|(of, _)| of.is_smooth);
+        row.off_cells = is_smooth.then_some(verdict.measures.off_cells);
         if !verdict.is_right() {
             row.state = State::Wrong;
-            row.faults = verdict.faults.iter().map(in_words).collect::<Vec<_>>().join("; ");
+            let words = |fault: &Fault| in_words(fault, self.boxes.len());
+            row.faults = verdict.faults.iter().map(words).collect::<Vec<_>>().join("; ");
             if !running.is_second {
-                self.keep(engine, &meshes)?;
+                self.keep(engine, &meshes, &verdict)?;
             }
         }
-        Ok(row)
+        Ok((row, counts))
+    }
+
+    /// Samples of all boxes.
+    fn samples(&self) -> f64 {
+        self.boxes.iter().map(|(of, _)| of.values.len() as f64).sum()
+    }
+
+    /// Why an engine is not asked.
+    fn why_not(&self, running: &Running) -> Option<String> {
+        let engine = running.engine;
+        if engine.closes && self.workload.truth.boundary > 0 {
+            return Some("it closes the surface at the sides of the box".into());
+        }
+        if !self.boxes.iter().all(|(of, _)| engine.grids.contain(of.counts, of.spacing)) {
+            return Some("it takes other grids: see `grids` in engines.toml".into());
+        }
+        (running.seconds_a_sample * self.samples() > LONGEST_S)
+            .then(|| format!("it would take more than {LONGEST_S} s, by its time on a smaller grid"))
     }
 
     /// Keeps a wrong mesh with its samples, for whoever wants to see it.
-    fn keep(&self, engine: &Engine, meshes: &[TriangleMesh]) -> Result<()> {
+    fn keep(&self, engine: &Engine, meshes: &[TriangleMesh], verdict: &Verdict) -> Result<()> {
         std::fs::create_dir_all(&self.wrong).with_context(|| self.wrong.display().to_string())?;
         for (i, ((sampled, path), mesh)) in self.boxes.iter().zip(meshes).enumerate() {
             let at = |name: String| self.wrong.join(name);
             std::fs::copy(path, at(format!("{i}.f32")))?;
             let Sampled { counts, origin, spacing, isovalue, is_smooth, .. } = sampled;
-            let truth = self.truth(sampled, engine);
+            let truth = self.truth(sampled, engine)?;
+            let kinds: Vec<_> = verdict.faults.iter().map(|fault| fault.kind).collect();
             let about = serde_json::json!({
                 "counts": counts, "origin": origin, "spacing": spacing, "isovalue": isovalue, "smooth": is_smooth,
-                "truth": truth, "soup": engine.soup,
+                "truth": truth, "soup": engine.soup, "ties": engine.ties, "kinds": kinds,
             });
             std::fs::write(at(format!("{i}.{}.json", engine.id)), about.to_string())?;
             let mut file = Vec::new();
@@ -276,16 +290,24 @@ impl<'a> Asked<'a> {
     }
 }
 
-fn in_words(fault: &Fault) -> String {
+/// Seconds of an answer. What an engine that calls a field spends in it is a part of its time.
+fn seconds(answer: &Answer, engine: &Engine) -> f64 {
+    let callback_s = if engine.takes == Takes::Field { answer.callback_s.unwrap_or_default() } else { 0.0 };
+    answer.extraction_s.map_or_else(|| answer.wall.as_secs_f64(), |seconds| seconds + callback_s)
+}
+
+fn in_words(fault: &Fault, boxes: usize) -> String {
     let number = |value: f64| match value.fract() == 0.0 {
         true => format!("{value}"),
         false => format!("{value:.3}"),
     };
-    format!("{} {}, expected {}", number(fault.found), fault.kind.words(), number(fault.expected))
+    let words =
+        format!("{} {}, expected {}", number(fault.found), fault.kind.words(), number(fault.expected));
+    if boxes > 1 { format!("{words}, and the like in {} of {boxes} grids", fault.boxes) } else { words }
 }
 
-/// The first line, and no more of it than a table can show.
-fn short(text: &str) -> String {
-    let line = text.lines().next().unwrap_or_default();
-    line.chars().take(160).collect()
+/// As much as a table can show.
+pub(super) fn in_a_line(text: &str) -> String {
+    let line: Vec<&str> = text.split_whitespace().collect();
+    line.join(" ").chars().take(300).collect()
 }

@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use isostudy_barometer::engine::Takes;
 use isostudy_barometer::ranks::Quantity;
+use isostudy_barometer::recording::{Row, State};
 use isostudy_report::{EnginePoint, barometer_figure};
 use minijinja::{Environment, context};
 use std::path::{Path, PathBuf};
@@ -22,6 +23,9 @@ pub(super) struct Arguments {
 
 const BEGIN: &str = "<!-- barometer -->";
 const END: &str = "<!-- end of barometer -->";
+
+/// Ranks over fewer workloads are not shown.
+const LEAST_WORKLOADS: usize = 3;
 
 const PAGE: &str = include_str!("page.html");
 
@@ -50,7 +54,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
 pub(super) fn write(folder: &Path) -> Result<()> {
     let recording = Recording::read(folder)?;
     let mut tables = vec![recording.conformance_table()];
-    tables.extend(recording.rank_tables());
+    tables.extend(recording.rank_tables(LEAST_WORKLOADS));
     tables.push(recording.wrong_table());
     tables.push(recording.engine_table());
     let text: Vec<String> = tables.iter().map(Table::markdown).collect();
@@ -89,8 +93,10 @@ fn heading(recording: &Recording) -> String {
 fn points(recording: &Recording) -> Vec<EnginePoint> {
     let ranking = recording.ranking(Quantity::Time, Takes::Samples);
     let right = |engine: &str| {
-        let row = recording.conformance.iter().find(|row| row.engine == engine)?;
-        (row.grids > 0).then(|| row.right as f64 / row.grids as f64)
+        let asked = recording.rows.iter().filter(|row| row.engine == engine && row.state != State::NotAsked);
+        let (right, other): (Vec<&Row>, Vec<&Row>) = asked.partition(|row| row.state == State::Right);
+        let all = right.len() + other.len();
+        (all > 0).then(|| right.len() as f64 / all as f64)
     };
     let ours = |engine: &str| recording.engines.iter().any(|row| row.engine == engine && row.ours);
     let point = |standing: &isostudy_barometer::ranks::Standing| {

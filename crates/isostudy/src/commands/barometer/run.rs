@@ -1,17 +1,18 @@
 //! `isostudy barometer run`: all workloads, by all engines that can be started.
 
 use super::given::{self, ENGINES, Given};
-use super::measuring::{Asked, Running};
+use super::measuring::{Asked, MESH, Running, in_a_line};
 use super::page;
 use crate::consent;
 use crate::machine;
 use crate::outcome::Outcome;
-use crate::store::{remove_if_there, sha256, write_whole};
+use crate::store::{remove_if_there, sha256, sha256_of_file, write_whole};
 use crate::terminal::counted;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use isostudy_barometer::engine::Engine;
 use isostudy_barometer::packed::{Conformance, Packed};
+use isostudy_barometer::ranks::{Quantity, rank};
 use isostudy_barometer::recording::{About, ConformanceRow, EngineRow, Row, State, write};
 use isostudy_mesh::{TriangleMesh, write_ply};
 use isostudy_program::{Program, Request, Samples, write_samples};
@@ -62,6 +63,37 @@ pub(super) struct Arguments {
     allow_programs: bool,
 }
 
+/// What results depend on beside workloads and engines' tables.
+struct Known {
+    rows: Vec<EngineRow>,
+    machine: String,
+}
+
+/// All that an engine's results depend on: its table, what it told, and the files that its command names.
+#[derive(Serialize)]
+struct Identity<'a> {
+    build: [&'static str; 2],
+    machine: &'a str,
+    engine: &'a Engine,
+    told: Option<&'a EngineRow>,
+    files: Vec<String>,
+}
+
+impl Known {
+    fn identity<'a>(&'a self, running: &'a Running) -> Result<Identity<'a>> {
+        let engine = running.engine;
+        let files =
+            running.program.files()?.iter().map(|file| sha256_of_file(file)).collect::<Result<_>>()?;
+        Ok(Identity {
+            build: [env!("ISOSTUDY_COMMIT"), env!("ISOSTUDY_DIRTY")],
+            machine: &self.machine,
+            engine,
+            told: self.rows.iter().find(|row| row.engine == engine.id),
+            files,
+        })
+    }
+}
+
 /// What is kept of a part, with a digest of all that it depends on.
 #[derive(Serialize, Deserialize)]
 struct Part<T> {
@@ -78,6 +110,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
     select(arguments, &mut given)?;
     let (rounds, volumes, side) =
         if arguments.quick { (3, 2, GRIDS_A_SIDE / 2) } else { (5, VOLUMES, GRIDS_A_SIDE) };
+    // Who asks for a workload waits for nothing else.
+    let volumes = if arguments.workload.is_empty() { volumes } else { 0 };
     let rounds = arguments.rounds.unwrap_or(rounds);
     let out = &arguments.out;
     std::fs::create_dir_all(out.join("parts")).with_context(|| out.display().to_string())?;
@@ -116,6 +150,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
         let why = program(engine).check().err().map(|error| error.to_string()).unwrap_or_default();
         about_engines.push(row_of(engine, "", &why, false));
     }
+    for left_out in about_engines.iter().filter(|row| !row.ran) {
+        tell!("{} is left out: {}", left_out.engine, left_out.note);
+        if arguments.engine.contains(&left_out.engine) {
+            bail!("{}: it was asked for, and is not there", left_out.engine);
+        }
+    }
     if engines.is_empty() {
         bail!("{}: none of the engines is there", arguments.folder.display());
     }
@@ -129,12 +169,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
     let ours = engines.iter().position(|running| running.engine.ours).unwrap_or(0);
     let first = engines[ours].engine;
     let again = Engine { id: format!("{} again", first.id), ..first.clone() };
-    let known = about_engines.clone();
+    let known = Known { rows: about_engines.clone(), machine: machine::read().model.unwrap_or_default() };
     engines.push(Running { is_second: true, ..Running::start(&again, program(&again))? });
 
-    let (conformance, with_tunnels) = conformance(out, &mut engines, &known, volumes, side)?;
     let rows = measure(out, &given, &mut engines, &known, rounds)?;
+    let (conformance, with_tunnels) = conformance(out, &mut engines, &known, volumes, side)?;
     let noise = noise(&rows, &first.id, &again.id);
+    let noise_of_scores = noise_of_scores(&rows, [&first.id, &again.id]);
     let rows: Vec<Row> = rows.into_iter().filter(|row| row.engine != again.id).collect();
     for absent in &given.engines.absent {
         about_engines.push(EngineRow {
@@ -160,6 +201,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
         commit: machine.build.commit.clone().unwrap_or_default(),
         rounds,
         noise,
+        noise_of_scores,
         grids,
         grids_with_tunnels: with_tunnels,
     };
@@ -235,25 +277,39 @@ fn measure(
     out: &Path,
     given: &Given,
     engines: &mut [Running],
-    known: &[EngineRow],
+    known: &Known,
     rounds: u32,
 ) -> Result<Vec<Row>> {
     let mut all = Vec::new();
-    let build = env!("ISOSTUDY_COMMIT");
+    let identities = engines.iter().map(|of| known.identity(of)).collect::<Result<Vec<_>>>()?;
+    let identities = serde_json::to_string(&identities)?;
+    let count = given.workloads.len();
     for (i, (group, workload)) in given.workloads.iter().enumerate() {
-        let path = out.join("parts").join(format!("{}.json", workload.id));
-        let of = (build, workload, known, rounds);
-        let rows = part(&path, &of, || {
-            tell!("{} of {}: {}", i + 1, given.workloads.len(), workload.id);
-            let Some(boxes) = given::sampled(&given.folder, workload)
-                .with_context(|| format!("workload {}", workload.id))?
-            else {
-                tell!("{}: its volume is not there: scripts/fetch-samples.sh fetches it", workload.id);
-                return Ok(Vec::new());
-            };
+        let (at, id) = (i + 1, &workload.id);
+        if let Some(file) = given.missing(workload) {
+            tell!(
+                "{at} of {count}: {id}: {} is not there; scripts/fetch-samples.sh and make bunny fetch it",
+                file.display()
+            );
+            continue;
+        }
+        let path = out.join("parts").join(format!("{id}.json"));
+        let mut is_new = false;
+        let rows = part(&path, &(&identities, workload, rounds), || {
+            is_new = true;
+            tell!("{at} of {count}: {id}");
+            let boxes = given::sampled(&given.folder, workload).with_context(|| format!("workload {id}"))?;
             let mut random = Pcg64::seed_from_u64(SEED + i as u64);
             Asked::new(*group, workload, boxes, out)?.measure(engines, rounds, &mut random)
         })?;
+        if !is_new {
+            tell!("{at} of {count}: {id}, kept");
+            let samples = workload.samples.iter().map(|&n| f64::from(n)).product::<f64>();
+            let boxes = workload.boxes.iter().map(|&n| f64::from(n)).product::<f64>();
+            for (running, row) in engines.iter_mut().zip(&rows) {
+                running.learn(row, samples * boxes);
+            }
+        }
         all.extend(rows);
     }
     Ok(all)
@@ -262,7 +318,7 @@ fn measure(
 fn conformance(
     out: &Path,
     engines: &mut [Running],
-    known: &[EngineRow],
+    known: &Known,
     volumes: u64,
     side: usize,
 ) -> Result<(Vec<ConformanceRow>, u64)> {
@@ -273,12 +329,15 @@ fn conformance(
         Ok(packed.iter().map(|packed| packed.with_tunnels(ties)).sum::<u64>())
     })?;
     let mut rows = Vec::new();
+    if packed.is_empty() {
+        return Ok((rows, 0));
+    }
     let count = engines.iter().filter(|running| !running.is_second).count();
     for (i, running) in engines.iter_mut().filter(|running| !running.is_second).enumerate() {
         let engine = running.engine;
         let path = out.join("parts").join(format!("conformance-{}.json", engine.id));
-        let about = known.iter().find(|row| row.engine == engine.id);
-        let row = part(&path, &(env!("ISOSTUDY_COMMIT"), about, volumes, side), || {
+        let identity = serde_json::to_string(&known.identity(running)?)?;
+        let row = part(&path, &(identity, volumes, side), || {
             tell!("random grids, engine {} of {count}: {}", i + 1, engine.id);
             let kept = out.join("wrong/random-grids");
             for ending in ["ply", "json"] {
@@ -291,14 +350,13 @@ fn conformance(
                 if begun.elapsed() > LONGEST_FOR_GRIDS {
                     break;
                 }
-                let mesh = running.folder().unwrap_or_default().join("mesh.ply");
                 let request = Request {
                     samples: Samples::Values(packed.values()),
                     size: [packed.samples() as u32; 3],
                     origin: [0.0; 3],
                     spacing: [1.0; 3],
                     isovalue: 0.0,
-                    mesh: Some(&mesh),
+                    mesh: Some(Path::new(MESH)),
                     may_be_empty: false,
                 };
                 match running.ask(&request) {
@@ -311,7 +369,7 @@ fn conformance(
                     }
                     Err(error) => {
                         // What was found before it failed stays.
-                        failed = error.to_string().lines().next().unwrap_or_default().to_owned();
+                        failed = in_a_line(&error.to_string());
                         break;
                     }
                 }
@@ -350,6 +408,15 @@ fn keep_grids(
     let mut file = Vec::new();
     write_ply(mesh, &mut file)?;
     write_whole(&folder.join(format!("{}.ply", engine.id)), &file)
+}
+
+/// By what ratio the scores of one engine in two processes may differ: the end of the interval that is farther from 1.
+fn noise_of_scores(rows: &[Row], ids: [&String; 2]) -> f64 {
+    let rows: Vec<Row> = rows.iter().filter(|row| ids.contains(&&row.engine)).cloned().collect();
+    let ranking = rank(&rows, Quantity::Time, 0.0, 1.0, SEED);
+    let [one, other] = ids.map(|id| ranking.standings.iter().find(|of| of.engine == *id));
+    // One of the two is the least on each workload, so that the ratio of the scores is that of the engines.
+    one.zip(other).map_or(1.0, |(one, other)| (one.high / other.low).max(other.high / one.low))
 }
 
 /// The ratio of an engine's times in two processes, from the 5th to the 95th percentile over workloads.

@@ -3,7 +3,7 @@
 use crate::outcome::Outcome;
 use crate::terminal::{grouped, say};
 use anyhow::{Context, Result, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use isostudy_barometer::engine::Takes;
 use isostudy_barometer::ranks::{Quantity, Ranking, rank};
 use isostudy_barometer::recording::{About, ConformanceRow, EngineRow, Row, State, read};
@@ -24,8 +24,8 @@ pub(super) struct Arguments {
     /// Folder of the recording
     recording: PathBuf,
     /// Only workloads of this group; may be given several times
-    #[arg(long, value_name = "GROUP")]
-    group: Vec<GroupName>,
+    #[arg(long, value_name = "GROUP", value_parser = group)]
+    group: Vec<Group>,
     /// Only this workload; may be given several times
     #[arg(long, value_name = "ID")]
     workload: Vec<String>,
@@ -34,25 +34,12 @@ pub(super) struct Arguments {
     engine: Vec<String>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum GroupName {
-    Curated,
-    Reported,
-    Hard,
-    Grown,
-    Chunks,
-}
-
-impl From<GroupName> for Group {
-    fn from(name: GroupName) -> Self {
-        match name {
-            GroupName::Curated => Self::Curated,
-            GroupName::Reported => Self::Reported,
-            GroupName::Hard => Self::Hard,
-            GroupName::Grown => Self::Grown,
-            GroupName::Chunks => Self::Chunks,
-        }
-    }
+fn group(name: &str) -> Result<Group, String> {
+    let names = || Group::ALL.map(Group::name).join(", ");
+    Group::ALL
+        .into_iter()
+        .find(|group| group.name() == name)
+        .ok_or_else(|| format!("the groups are {}", names()))
 }
 
 /// What lies in a folder.
@@ -85,7 +72,10 @@ pub(super) struct Table {
 impl Table {
     pub(super) fn markdown(&self) -> String {
         let mut text = format!("### {}\n\n{}\n\n", self.title, wrapped(&self.words));
-        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        let line = |cells: &[String]| {
+            let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            format!("| {} |\n", cells.join(" | "))
+        };
         text += &line(&self.head.iter().map(|&cell| cell.to_owned()).collect::<Vec<_>>());
         text += &line(&vec!["---".to_owned(); self.head.len()]);
         self.rows.iter().for_each(|row| text += &line(row));
@@ -138,7 +128,8 @@ impl Recording {
             self.engines.iter().any(|engine| engine.engine == row.engine && engine.takes == takes)
         };
         let rows: Vec<Row> = self.rows.iter().filter(is_such).cloned().collect();
-        rank(&rows, quantity, LEAST_SHARE, SEED)
+        let noise = if quantity == Quantity::Time { self.about.noise_of_scores } else { 1.0 };
+        rank(&rows, quantity, LEAST_SHARE, noise, SEED)
     }
 
     pub(super) fn name(&self, engine: &str) -> String {
@@ -147,14 +138,20 @@ impl Recording {
         if row.is_some_and(|row| row.ours) { format!("{name} *") } else { name.to_owned() }
     }
 
+    /// Whether the second check found what the first one found; `None` where it was not run.
+    fn is_confirmed(&self, workload: &str, engine: &str) -> Option<bool> {
+        let of = self.confirmed.iter().find(|of| of.workload == workload && of.engine == engine)?;
+        Some(of.confirmed == "yes")
+    }
+
     fn counts(&self, engine: &str, state: State) -> usize {
         self.rows.iter().filter(|row| row.engine == engine && row.state == state).count()
     }
 
     /// A table of ranks; `None` where nothing can be ranked.
-    pub(super) fn rank_table(&self, quantity: Quantity, takes: Takes) -> Option<Table> {
+    fn rank_table(&self, quantity: Quantity, takes: Takes, least: usize) -> Option<Table> {
         let ranking = self.ranking(quantity, takes);
-        if ranking.standings.len() < 2 || ranking.workloads.is_empty() {
+        if ranking.standings.len() < 2 || ranking.workloads.len() < least {
             return None;
         }
         let given = match takes {
@@ -164,17 +161,19 @@ impl Recording {
         let count = ranking.workloads.len();
         let mut words = format!(
             "1 would be the best on each workload. Scores are geometric means over the {count} workloads that all of these engines passed; \
-             intervals are at 95 % over workloads. Engines that are not distinguished share a rank."
+             intervals are at 95 % over surfaces. Engines that are not distinguished share a rank."
         );
         if quantity == Quantity::Time {
             let [low, high] = self.about.noise;
             _ = write!(
                 words,
-                " One engine in two processes differed by {low:.2} to {high:.2} on a workload."
+                " One engine in two processes differed by {low:.2} to {high:.2} on nine of ten workloads. Its two scores may differ by {:.3}, so that engines \
+                 nearer to each other share a rank.",
+                self.about.noise_of_scores
             );
         }
         if quantity == Quantity::ErrorAtEqualTriangles {
-            words += " It is the mean distance from the middles of triangles to the interpolated surface, times the triangles.";
+            words += " Of labels there is none. It is the mean distance from the middles of triangles to the interpolated surface, times the triangles.";
         }
         if !ranking.left_out.is_empty() {
             let names: Vec<String> = ranking
@@ -210,21 +209,30 @@ impl Recording {
             _ => format!("{:.2} %", 100.0 * part as f64 / all as f64),
         };
         let mut engines: Vec<&EngineRow> = self.engines.iter().filter(|engine| engine.ran).collect();
-        let of = |engine: &&EngineRow| self.conformance.iter().find(|row| row.engine == engine.engine);
-        engines.sort_by_key(|engine| std::cmp::Reverse(of(engine).map_or(0, |row| row.right)));
+        engines.sort_by_key(|engine| {
+            let counts = |state| self.counts(&engine.engine, state);
+            (std::cmp::Reverse(counts(State::Right)), counts(State::Wrong), engine.name.clone())
+        });
         let rows = engines.iter().map(|engine| {
             let id = engine.engine.as_str();
-            let counts =
-                [State::Right, State::Wrong, State::Failed, State::NotAsked].map(|of| self.counts(id, of));
-            let mut cells = vec![self.name(id)];
-            cells.extend(counts.map(|count| count.to_string()));
-            match of(engine) {
-                Some(row) if row.failed.is_empty() => {
+            let wrong = self.rows.iter().filter(|row| row.engine == id && row.state == State::Wrong);
+            let (confirmed, open): (Vec<&Row>, Vec<&Row>) =
+                wrong.partition(|row| self.is_confirmed(&row.workload, id) == Some(true));
+            let mut cells = vec![self.name(id), self.counts(id, State::Right).to_string()];
+            cells.extend([confirmed.len(), open.len()].map(|count| count.to_string()));
+            cells.extend([State::Failed, State::NotAsked].map(|state| self.counts(id, state).to_string()));
+            let found = self.conformance.iter().find(|row| row.engine == id);
+            match found.filter(|row| row.grids > 0) {
+                Some(row) if self.is_confirmed("random-grids", id) != Some(false) => {
                     cells.push(grouped(row.grids));
                     let parts = [row.same_topology, row.closed_manifold, row.right];
                     cells.extend(parts.map(|part| share(part, row.grids)));
                 }
-                _ => cells.extend(["failed".into(), String::new(), String::new(), String::new()]),
+                Some(row) => {
+                    let words = ["not confirmed".into(), String::new(), String::new()];
+                    cells.extend([vec![grouped(row.grids)], words.to_vec()].concat());
+                }
+                None => cells.extend(["none".into(), String::new(), String::new(), String::new()]),
             }
             cells
         });
@@ -232,7 +240,8 @@ impl Recording {
         Table {
             title: "Who is right".into(),
             words: format!(
-                "Of the workloads: those with the right mesh, a wrong one, none, and not asked. Of up to {grids} random grids of 4 x 4 x 4 samples, as many as it can do in a minute: \
+                "Of the workloads: those with the right mesh, with a wrong one that a second check confirmed, with one that it has not \
+                 confirmed, with none, and not asked. Of up to {grids} random grids of 4 x 4 x 4 samples, as many as it can do in a minute: \
                  those with the exact topology of the trilinear interpolant, those whose mesh is a closed manifold, and those with both. \
                  {tunnels} of these grids have a cell with a tunnel. A method that promises no such topology is not wrong to lack it. \
                  Engines with an asterisk are made by the makers of the barometer."
@@ -241,8 +250,10 @@ impl Recording {
                 "engine",
                 "right",
                 "wrong",
+                "unconfirmed",
                 "failed",
                 "not asked",
+                "grids",
                 "topology",
                 "closed manifold",
                 "both",
@@ -253,19 +264,25 @@ impl Recording {
 
     /// What is wrong, where.
     pub(super) fn wrong_table(&self) -> Table {
-        let is_confirmed = |row: &&Row| {
-            let is_it = |of: &&Confirmed| of.workload == row.workload && of.engine == row.engine;
-            self.confirmed.iter().find(is_it).is_some_and(|of| of.confirmed == "yes")
-        };
         let wrong: Vec<&Row> = self.rows.iter().filter(|row| row.state == State::Wrong).collect();
-        let confirmed: Vec<&Row> = wrong.iter().copied().filter(|row| is_confirmed(row)).collect();
+        let confirmed: Vec<&Row> = wrong
+            .iter()
+            .copied()
+            .filter(|row| self.is_confirmed(&row.workload, &row.engine) == Some(true))
+            .collect();
         let failed = self.rows.iter().filter(|row| row.state == State::Failed);
-        let words = format!(
-            "Of {} wrong verdicts, {} were confirmed by a second check that shares no code with the first; these are below, with answers that \
-             were no mesh. `scripts/barometer/confirm.py RECORDING WORKLOAD ENGINE` shows each.",
-            wrong.len(),
-            confirmed.len()
-        );
+        let words = if self.confirmed.is_empty() {
+            "The second check has not run: `scripts/barometer/confirm.py RECORDING`, then `isostudy barometer report RECORDING`. Answers that \
+             were no mesh are below."
+                .to_owned()
+        } else {
+            format!(
+                "Of {} wrong verdicts, {} were confirmed by a second check that shares no code with the first. These are below, with answers \
+                 that were no mesh. `scripts/barometer/confirm.py RECORDING WORKLOAD ENGINE` shows each.",
+                wrong.len(),
+                confirmed.len()
+            )
+        };
         let rows = confirmed.into_iter().chain(failed);
         Table {
             title: "What is wrong".into(),
@@ -301,11 +318,13 @@ impl Recording {
         }
     }
 
-    /// All tables of ranks.
-    pub(super) fn rank_tables(&self) -> Vec<Table> {
+    /// All tables of ranks over so many workloads at least.
+    pub(super) fn rank_tables(&self, least: usize) -> Vec<Table> {
         let mut tables = Vec::new();
         for takes in [Takes::Samples, Takes::Field] {
-            tables.extend(Quantity::ALL.into_iter().filter_map(|quantity| self.rank_table(quantity, takes)));
+            tables.extend(
+                Quantity::ALL.into_iter().filter_map(|quantity| self.rank_table(quantity, takes, least)),
+            );
         }
         tables
     }
@@ -322,7 +341,7 @@ fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
 /// If the recording cannot be read, or has nothing of what was chosen.
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
     let mut recording = Recording::read(&arguments.recording)?;
-    let groups: Vec<Group> = arguments.group.iter().map(|&name| name.into()).collect();
+    let groups = &arguments.group;
     let chosen = |ids: &[String], id: &String| ids.is_empty() || ids.contains(id);
     for (what, ids, has) in [
         (
@@ -341,7 +360,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
             && chosen(&arguments.workload, &row.workload)
             && chosen(&arguments.engine, &row.engine)
     });
-    let tables = recording.rank_tables();
+    let tables = recording.rank_tables(1);
     if tables.is_empty() {
         bail!("{}: no workload was passed by all that were chosen", arguments.recording.display());
     }
