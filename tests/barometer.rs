@@ -48,13 +48,15 @@ fn measured(out: &Path) -> BTreeMap<(String, String), (String, String)> {
     rows.map(|row| ((row[0].into(), row[2].into()), (row[3].into(), row[4].into()))).collect()
 }
 
-/// Every method is right on what is quick, but for what it does not promise: duals with one vertex per cell are no manifolds where sheets
-/// share a cell, and only `mc33` has the topology of random samples.
+/// Methods that promise a manifold are right on all that is quick, but for random samples, whose exact topology `mc33` alone promises. Duals
+/// with one vertex per cell are no manifolds where sheets share a cell, and have no other fault.
 #[test]
 fn our_own_engines_are_right() {
     let place = tempfile::tempdir().unwrap();
     let methods = ["mc", "mc33", "nets-manifold", "si", "bi"];
-    let folder = folder(place.path(), &methods.map(own));
+    let others = ["nets", "dc", "snapmc"];
+    let engines: Vec<_> = methods.into_iter().chain(others).map(own).collect();
+    let folder = folder(place.path(), &engines);
     let out = place.path().join("out");
     let arguments = [
         "barometer",
@@ -72,9 +74,19 @@ fn our_own_engines_are_right() {
     let run = isostudy(&[&arguments[..], &["--allow-programs"]].concat());
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let found = measured(&out);
-    assert_eq!(found.len(), 23 * methods.len());
+    assert_eq!(found.len(), 23 * engines.len());
     for ((workload, engine), (state, faults)) in &found {
-        if workload != "random-12" || engine == "mc33" {
+        if others.contains(&engine.as_str()) {
+            let only = faults.split_once(" non-manifold edges and vertices, expected 0");
+            let is_known = only.is_some_and(|(count, rest)| {
+                count.bytes().all(|byte| byte.is_ascii_digit())
+                    && (rest.is_empty() || rest.ends_with("grids"))
+            });
+            assert!(
+                state == "right" || is_known || workload == "random-12",
+                "{engine} on {workload}: {faults}"
+            );
+        } else if workload != "random-12" || engine == "mc33" {
             assert_eq!(state, "right", "{engine} on {workload}: {faults}");
         }
     }
@@ -103,7 +115,7 @@ fn our_own_engines_are_right() {
     let before = std::fs::read(out.join("measurements.csv")).unwrap();
     let again = isostudy(&arguments);
     assert_eq!(again.code, Some(0), "{}", again.stderr);
-    assert!(!again.stderr.contains("1 of 23"), "{}", again.stderr);
+    assert_eq!(again.stderr.matches(", kept").count(), 23, "{}", again.stderr);
     assert_eq!(std::fs::read(out.join("measurements.csv")).unwrap(), before);
 
     let out = out.to_str().unwrap();
@@ -120,18 +132,21 @@ fn our_own_engines_are_right() {
     assert!(unknown.code == Some(2) && unknown.stderr.contains("mc34"), "{}", unknown.stderr);
 }
 
-/// One flipped triangle, one lost, open seams, half a cell of displacement: each is found on each workload, and gets no rank. The adapter
-/// itself spoils nothing.
+/// One flipped triangle, one lost, open seams, half a cell of displacement, a mesh that is too large, another answer when it is timed: each
+/// is found on each workload, and gets no rank. The adapter itself spoils nothing. One that dies once fails once.
 #[test]
 fn engines_that_were_made_wrong_are_found() {
     let place = tempfile::tempdir().unwrap();
-    let script = root().join("tests/spoiled_engine.py");
+    // A copy, beside which the dying one leaves a mark.
+    let script = place.path().join("spoiled_engine.py");
+    std::fs::copy(root().join("tests/spoiled_engine.py"), &script).unwrap();
     let spoiled = |way: &str| {
         let command = ["python3", script.to_str().unwrap(), way, ISOSTUDY, "barometer", "engine", "mc"];
         (way.to_owned(), command.map(str::to_owned).to_vec())
     };
-    let ways = ["flipped", "lost", "seams", "shifted"];
-    let engines: Vec<_> = [own("mc"), spoiled("whole")].into_iter().chain(ways.map(spoiled)).collect();
+    let ways = ["flipped", "lost", "seams", "shifted", "inflated", "lazy"];
+    let engines: Vec<_> =
+        [own("mc"), spoiled("whole"), spoiled("dying")].into_iter().chain(ways.map(spoiled)).collect();
     let folder = folder(place.path(), &engines);
     let out = place.path().join("out");
     let mut arguments = vec!["barometer", "run", folder.to_str().unwrap(), "--quick", "--rounds", "1", "-o"];
@@ -150,11 +165,14 @@ fn engines_that_were_made_wrong_are_found() {
     for workload in workloads {
         let of = |engine: &str| &found[&(workload.to_owned(), engine.to_owned())];
         assert_eq!((of("mc").0.as_str(), of("whole").0.as_str()), ("right", "right"), "{workload}");
-        for (way, word) in words {
+        for (way, expected, word) in words {
             let (state, faults) = of(way);
-            assert!(state == "wrong" && faults.contains(word), "{way} on {workload}: {state}: {faults}");
+            assert!(state == expected && faults.contains(word), "{way} on {workload}: {state}: {faults}");
         }
     }
+    let deaths =
+        workloads.iter().filter(|id| found[&(id.to_string(), "dying".to_owned())].0 == "failed").count();
+    assert_eq!(deaths, 1, "{found:?}");
     let tables = std::fs::read_to_string(out.join("tables.md")).unwrap();
     let ranks: Vec<&str> = tables.split("### ").filter(|table| table.starts_with("By ")).collect();
     assert!(!ranks.is_empty() && ranks.iter().all(|table| table.contains("| whole |")), "{tables}");

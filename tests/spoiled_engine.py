@@ -1,9 +1,12 @@
 """An engine that was made wrong on purpose: another one's answers, spoiled in one way.
 
-usage: spoiled_engine.py WAY COMMAND...      WAY: whole, flipped, lost, seams or shifted
+usage: spoiled_engine.py WAY COMMAND...      WAY: whole, flipped, lost, seams, shifted, inflated, lazy or dying
+
+Lazy answers another number of triangles, in no time, where no mesh is asked for. Dying ends once, in the middle of its second answer.
 """
 
 import json
+import os
 import struct
 import subprocess
 import sys
@@ -51,6 +54,19 @@ def spoiled(way, request, points, triangles):
     elif way == "shifted":
         half = [0.5 * step for step in request["spacing"]]
         points = [tuple(x + h for x, h in zip(point, half)) for point in points]
+    elif way == "inflated":
+        # Along the normals, so that the mesh is as smooth as before.
+        normals = [[0.0] * 3 for _ in points]
+        for triangle in triangles:
+            a, b, c = (points[v] for v in triangle)
+            u, w = [y - x for x, y in zip(a, b)], [y - x for x, y in zip(a, c)]
+            normal = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]]
+            for v in triangle:
+                normals[v] = [x + y for x, y in zip(normals[v], normal)]
+        far = 0.6 * min(request["spacing"])
+        points = [
+            tuple(x + far * n / (sum(m * m for m in normal) ** 0.5 or 1.0) for x, n in zip(point, normal)) for point, normal in zip(points, normals)
+        ]
     return points, triangles
 
 
@@ -62,6 +78,12 @@ def main():
             engine.stdin.write(line)
             engine.stdin.flush()
             answer, request = json.loads(engine.stdout.readline()), json.loads(line)
+            died = os.path.join(os.path.dirname(sys.argv[0]), "died")
+            if way == "dying" and request["id"] == 2 and not os.path.exists(died):
+                open(died, "w").close()
+                sys.exit(3)
+            if way == "lazy" and not request["mesh"]:
+                answer |= {"extraction_s": 1e-9, "triangles": 1}
             if request["mesh"] and "failed" not in answer:
                 points, triangles = spoiled(way, request, *read(request["mesh"]))
                 write(request["mesh"], points, triangles)

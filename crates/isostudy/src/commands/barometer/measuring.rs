@@ -2,7 +2,7 @@
 
 use super::given::Sampled;
 use anyhow::{Context, Result};
-use isostudy_barometer::engine::{Engine, Takes};
+use isostudy_barometer::engine::{Engine, Takes, Ties};
 use isostudy_barometer::recording::{Row, State};
 use isostudy_barometer::workload::{Group, Truth, Workload};
 use isostudy_barometer::{Fault, Verdict, judge};
@@ -27,7 +27,7 @@ pub(super) struct Running<'a> {
 
 /// An engine that would take longer for an answer is not asked, so that a run ends.
 const LONGEST_S: f64 = 20.0;
-/// An engine that took longer for an answer is timed no more.
+/// An engine that took longer for a workload is timed no more: the answer that was judged may be the only one.
 const LONG_S: f64 = 1.0;
 /// Samples of a grid that says something about larger ones.
 const NOT_SMALL: f64 = 5e4;
@@ -71,6 +71,8 @@ pub(super) struct Asked<'a> {
     pub(super) group: Group,
     pub(super) workload: &'a Workload,
     boxes: Vec<(Sampled, PathBuf)>,
+    /// Of several boxes what follows from the samples of each, with ties outside and inside.
+    truths: [Vec<Truth>; 2],
     wrong: PathBuf,
     _folder: tempfile::TempDir,
 }
@@ -83,8 +85,15 @@ impl<'a> Asked<'a> {
             write_samples(&path, &sampled.values).with_context(|| path.display().to_string())?;
             Ok((sampled, path))
         });
-        let boxes = boxes.collect::<Result<_>>()?;
-        Ok(Self { group, workload, boxes, wrong: out.join("wrong").join(&workload.id), _folder: folder })
+        let boxes = boxes.collect::<Result<Vec<(Sampled, PathBuf)>>>()?;
+        let mut truths = [Vec::new(), Vec::new()];
+        if boxes.len() > 1 {
+            for (truths, ties) in truths.iter_mut().zip([Ties::Outside, Ties::Inside]) {
+                *truths = boxes.iter().map(|(of, _)| truth_of_samples(of, ties)).collect::<Result<_>>()?;
+            }
+        }
+        let wrong = out.join("wrong").join(&workload.id);
+        Ok(Self { group, workload, boxes, truths, wrong, _folder: folder })
     }
 
     fn request<'r>(&self, (sampled, path): &'r (Sampled, PathBuf), mesh: Option<&'r Path>) -> Request<'r> {
@@ -99,21 +108,10 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// What is known of each box: of one, what the file says; of several, what follows from its samples.
-    fn truth(&self, sampled: &Sampled, engine: &Engine) -> Result<Truth> {
-        if self.boxes.len() == 1 {
-            return Ok(self.workload.truth);
-        }
-        let samples = isostudy_trilinear::Samples::try_new(sampled.counts, &sampled.values)?;
-        let surface = topology(&samples, sampled.isovalue, engine.ties.into())?;
-        Ok(Truth {
-            components: surface.components.len() as u64,
-            euler: surface.euler_characteristic(),
-            boundary: surface.boundary_loops(),
-            volume: None,
-            area: None,
-            within: self.workload.truth.within,
-        })
+    /// What is known of a box: of a single one, what the file says; of several, what follows from its samples.
+    fn truth(&self, number: usize, engine: &Engine) -> &Truth {
+        let of_samples = &self.truths[usize::from(engine.ties == Ties::Inside)];
+        of_samples.get(number).unwrap_or(&self.workload.truth)
     }
 
     /// Judges and times all engines.
@@ -136,6 +134,13 @@ impl<'a> Asked<'a> {
         }
         let mut times: Vec<Vec<f64>> = vec![Vec::new(); engines.len()];
         let mut order: Vec<usize> = (0..engines.len()).filter(|&e| rows[e].state == State::Right).collect();
+        order.retain(|&e| match rows[e].judged_s {
+            Some(seconds) if seconds > LONG_S => {
+                times[e].push(seconds);
+                false
+            }
+            _ => true,
+        });
         for _ in 0..rounds {
             order.shuffle(random);
             for &e in &order {
@@ -217,14 +222,14 @@ impl<'a> Asked<'a> {
         let mut verdict = Verdict::default();
         let mut meshes = Vec::new();
         let mut judged_s = 0.0;
-        for of in &self.boxes {
+        for (number, of) in self.boxes.iter().enumerate() {
             match running.ask(&self.request(of, Some(Path::new(MESH)))) {
                 Ok(answer) => {
                     judged_s += seconds(&answer, engine);
                     counts = [counts[0] + answer.vertices, counts[1] + answer.triangles];
                     let mesh = answer.mesh.unwrap_or_default();
-                    let truth = self.truth(&of.0, engine)?;
-                    verdict.add(&judge(&mesh, &of.0.grid(), &truth, engine.ties, engine.soup));
+                    let truth = self.truth(number, engine);
+                    verdict.add(&judge(&mesh, &of.0.grid(), truth, engine.ties, engine.soup));
                     meshes.push(mesh);
                 }
                 Err(error) => {
@@ -275,7 +280,7 @@ impl<'a> Asked<'a> {
             let at = |name: String| self.wrong.join(name);
             std::fs::copy(path, at(format!("{i}.f32")))?;
             let Sampled { counts, origin, spacing, isovalue, is_smooth, .. } = sampled;
-            let truth = self.truth(sampled, engine)?;
+            let truth = self.truth(i, engine);
             let kinds: Vec<_> = verdict.faults.iter().map(|fault| fault.kind).collect();
             let about = serde_json::json!({
                 "counts": counts, "origin": origin, "spacing": spacing, "isovalue": isovalue, "smooth": is_smooth,
@@ -288,6 +293,20 @@ impl<'a> Asked<'a> {
         }
         Ok(())
     }
+}
+
+/// What the trilinear interpolant of a box has for a surface.
+fn truth_of_samples(sampled: &Sampled, ties: Ties) -> Result<Truth> {
+    let samples = isostudy_trilinear::Samples::try_new(sampled.counts, &sampled.values)?;
+    let surface = topology(&samples, sampled.isovalue, ties.into())?;
+    Ok(Truth {
+        components: surface.components.len() as u64,
+        euler: surface.euler_characteristic(),
+        boundary: surface.boundary_loops(),
+        volume: None,
+        area: None,
+        within: 1.0,
+    })
 }
 
 /// Seconds of an answer. What an engine that calls a field spends in it is a part of its time.

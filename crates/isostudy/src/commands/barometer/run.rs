@@ -32,7 +32,7 @@ const GRIDS_A_SIDE: usize = 20;
 /// Volumes of random grids: 104,000 grids.
 const VOLUMES: u64 = 13;
 /// An engine that has taken so long for random grids is given no more of them.
-const LONGEST_FOR_GRIDS: Duration = Duration::from_secs(60);
+const LONGEST_FOR_GRIDS: Duration = Duration::from_secs(20);
 /// Draws volumes and the order of turns.
 const SEED: u64 = 41;
 

@@ -241,7 +241,7 @@ impl Recording {
             title: "Who is right".into(),
             words: format!(
                 "Of the workloads: those with the right mesh, with a wrong one that a second check confirmed, with one that it has not \
-                 confirmed, with none, and not asked. Of up to {grids} random grids of 4 x 4 x 4 samples, as many as it can do in a minute: \
+                 confirmed, with none, and not asked. Of up to {grids} random grids of 4 x 4 x 4 samples, as many as it can do in 20 s: \
                  those with the exact topology of the trilinear interpolant, those whose mesh is a closed manifold, and those with both. \
                  {tunnels} of these grids have a cell with a tunnel. A method that promises no such topology is not wrong to lack it. \
                  Engines with an asterisk are made by the makers of the barometer."
