@@ -11,7 +11,7 @@ TURNTABLE=as_si
 
 [ -f "$FROM/manifest.json" ] || { echo "$FROM: has no manifest; run isostudy study configs/paper.toml" >&2; exit 2; }
 python3 -c 'import PIL' || { echo "install Pillow first: pip install pillow" >&2; exit 2; }
-find "$TO" -mindepth 1 -maxdepth 1 ! -name terrain -exec rm -r {} +
+find "$TO" -mindepth 1 -maxdepth 1 ! -name terrain ! -name barometer -exec rm -r {} +
 mkdir -p "$TO/tables" "$TO/figures"
 for name in $TABLES; do cp "$FROM/tables/$name.csv" "$TO/tables/"; done
 for name in $FIGURES; do cp "$FROM/figures/$name.svg" "$TO/figures/"; done

@@ -7,8 +7,10 @@ use std::path::{Path, PathBuf};
 
 const ISOSTUDY: &str = env!("CARGO_BIN_EXE_isostudy");
 
-fn isostudy(arguments: &[&str]) -> Run {
-    Run::of(command::isostudy().args(arguments).current_dir(std::env::temp_dir()))
+/// In a folder, where it remembers what it was allowed: nothing, at first.
+fn isostudy(place: &Path, arguments: &[&str]) -> Run {
+    let mut command = command::isostudy();
+    Run::of(command.args(arguments).current_dir(place).env("XDG_STATE_HOME", place.join("state")))
 }
 
 fn root() -> PathBuf {
@@ -45,7 +47,7 @@ fn own(method: &str) -> (String, Vec<String>) {
 fn measured(out: &Path) -> BTreeMap<(String, String), (String, String)> {
     let mut reader = csv::Reader::from_path(out.join("measurements.csv")).unwrap();
     let rows = reader.records().map(|row| row.unwrap());
-    rows.map(|row| ((row[0].into(), row[2].into()), (row[3].into(), row[4].into()))).collect()
+    rows.map(|row| ((row[0].into(), row[3].into()), (row[4].into(), row[5].into()))).collect()
 }
 
 /// Methods that promise a manifold are right on all that is quick, but for random samples, whose exact topology `mc33` alone promises. Duals
@@ -68,10 +70,10 @@ fn our_own_engines_are_right() {
         "-o",
         out.to_str().unwrap(),
     ];
-    let refused = isostudy(&arguments);
+    let refused = isostudy(place.path(), &arguments);
     assert_eq!(refused.code, Some(2), "programs run where they are allowed alone: {}", refused.stderr);
     assert!(refused.stderr.contains("--allow-programs"), "{}", refused.stderr);
-    let run = isostudy(&[&arguments[..], &["--allow-programs"]].concat());
+    let run = isostudy(place.path(), &[&arguments[..], &["--allow-programs"]].concat());
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let found = measured(&out);
     assert_eq!(found.len(), 23 * engines.len());
@@ -113,22 +115,24 @@ fn our_own_engines_are_right() {
 
     // Nothing is done again, and the files stay.
     let before = std::fs::read(out.join("measurements.csv")).unwrap();
-    let again = isostudy(&arguments);
+    let again = isostudy(place.path(), &arguments);
     assert_eq!(again.code, Some(0), "{}", again.stderr);
     assert_eq!(again.stderr.matches(", kept").count(), 23, "{}", again.stderr);
     assert_eq!(std::fs::read(out.join("measurements.csv")).unwrap(), before);
 
     let out = out.to_str().unwrap();
-    let compared = isostudy(&["barometer", "compare", out, out]);
+    let compared = isostudy(place.path(), &["barometer", "compare", out, out]);
     assert_eq!(compared.code, Some(0), "a recording agrees with itself: {}", compared.stderr);
-    let ranks =
-        isostudy(&["barometer", "rank", out, "--group", "chunks", "--engine", "mc", "--engine", "mc33"]);
+    let ranks = isostudy(
+        place.path(),
+        &["barometer", "rank", out, "--group", "chunks", "--engine", "mc", "--engine", "mc33"],
+    );
     assert!(
         ranks.stdout.contains("over the 2 workloads") && !ranks.stdout.contains("| si |"),
         "{}",
         ranks.stdout
     );
-    let unknown = isostudy(&["barometer", "rank", out, "--engine", "mc34"]);
+    let unknown = isostudy(place.path(), &["barometer", "rank", out, "--engine", "mc34"]);
     assert!(unknown.code == Some(2) && unknown.stderr.contains("mc34"), "{}", unknown.stderr);
 }
 
@@ -153,14 +157,16 @@ fn engines_that_were_made_wrong_are_found() {
     arguments.extend([out.to_str().unwrap(), "--allow-programs"]);
     let workloads = ["sphere", "torus", "gyroid", "terrain-hills", "unequal-steps", "large-offset"];
     workloads.iter().for_each(|workload| arguments.extend(["--workload", workload]));
-    let run = isostudy(&arguments);
+    let run = isostudy(place.path(), &arguments);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let found = measured(&out);
     let words = [
-        ("flipped", "misoriented"),
-        ("lost", "boundary"),
-        ("seams", "boundary"),
-        ("shifted", "displacement"),
+        ("flipped", "wrong", "misoriented"),
+        ("lost", "wrong", "boundary"),
+        ("seams", "wrong", "boundary"),
+        ("shifted", "wrong", "displacement"),
+        ("inflated", "wrong", "from the surface"),
+        ("lazy", "failed", "when it was timed"),
     ];
     for workload in workloads {
         let of = |engine: &str| &found[&(workload.to_owned(), engine.to_owned())];

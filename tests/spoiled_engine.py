@@ -63,7 +63,7 @@ def spoiled(way, request, points, triangles):
             normal = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]]
             for v in triangle:
                 normals[v] = [x + y for x, y in zip(normals[v], normal)]
-        far = 0.6 * min(request["spacing"])
+        far = 0.6 * max(request["spacing"])
         points = [
             tuple(x + far * n / (sum(m * m for m in normal) ** 0.5 or 1.0) for x, n in zip(point, normal)) for point, normal in zip(points, normals)
         ]

@@ -10,6 +10,7 @@ use isostudy_mesh::glam::DVec3;
 use isostudy_trilinear::{Fault, Samples, topology, verify};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::engine::Ties;
@@ -122,23 +123,29 @@ impl Packed {
             part.triangles.push(triangle);
         }
         let nothing = TriangleMesh::default();
-        for grid in 0..self.grids() {
-            let values = self.grid(grid);
-            let samples = Samples::try_new([PERIOD + 1; 3], &values).expect("finite samples, enough of them");
-            let part = parts.get(&grid).unwrap_or(&nothing);
-            let verdict = verify(part, &samples, 0.0, ties.into()).expect("the isovalue is finite");
-            found.grids += 1;
-            found.right += u64::from(verdict.is_right());
-            let is_topology = |fault: Fault| {
+        let verdicts: Vec<Vec<Fault>> = (0..self.grids())
+            .into_par_iter()
+            .map(|grid| {
+                let values = self.grid(grid);
+                let samples =
+                    Samples::try_new([PERIOD + 1; 3], &values).expect("finite samples, enough of them");
+                let part = parts.get(&grid).unwrap_or(&nothing);
+                let verdict = verify(part, &samples, 0.0, ties.into()).expect("the isovalue is finite");
+                verdict.findings.iter().map(|finding| finding.fault).collect()
+            })
+            .collect();
+        for (grid, faults) in verdicts.iter().enumerate() {
+            let is_topology = |fault: &Fault| {
                 matches!(
                     fault,
                     Fault::Components | Fault::EulerCharacteristic | Fault::Tunnels | Fault::UnlikeComponents
                 )
             };
-            let faults = verdict.findings.iter().map(|finding| finding.fault);
-            found.same_topology += u64::from(!faults.clone().any(is_topology));
-            found.closed_manifold += u64::from(faults.clone().all(is_topology));
-            if !verdict.is_right() && found.wrong.len() < NAMED {
+            found.grids += 1;
+            found.right += u64::from(faults.is_empty());
+            found.same_topology += u64::from(!faults.iter().any(is_topology));
+            found.closed_manifold += u64::from(faults.iter().all(is_topology));
+            if !faults.is_empty() && found.wrong.len() < NAMED {
                 found.wrong.push([volume, grid as u64]);
             }
         }
@@ -151,6 +158,6 @@ impl Packed {
             let samples = Samples::try_new([PERIOD + 1; 3], &values).expect("finite samples, enough of them");
             topology(&samples, 0.0, ties.into()).expect("the isovalue is finite").tunnel_cells > 0
         };
-        (0..self.grids()).filter(|&grid| has_tunnel(grid)).count() as u64
+        (0..self.grids()).into_par_iter().filter(|&grid| has_tunnel(grid)).count() as u64
     }
 }

@@ -26,7 +26,7 @@ pub(super) struct Running<'a> {
 }
 
 /// An engine that would take longer for an answer is not asked, so that a run ends.
-const LONGEST_S: f64 = 20.0;
+const LONGEST_S: f64 = 5.0;
 /// An engine that took longer for a workload is timed no more: the answer that was judged may be the only one.
 const LONG_S: f64 = 1.0;
 /// Samples of a grid that says something about larger ones.
