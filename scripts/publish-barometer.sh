@@ -13,5 +13,5 @@ mkdir -p "$TO"
 for file in about.toml measurements.csv engines.csv conformance.csv confirmed.csv speed-and-correctness.svg; do
     [ ! -f "$FROM/$file" ] || cp "$FROM/$file" "$TO/"
 done
-target/release/isostudy barometer report "$FROM" --into docs/barometer.md
+"${ISOSTUDY:-target/release/isostudy}" barometer report "$FROM" --into docs/barometer.md
 echo "$TO, and the tables of docs/barometer.md"

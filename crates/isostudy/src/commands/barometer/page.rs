@@ -1,6 +1,6 @@
 //! The page of a recording, its tables as text, and the figure that shows speed against correctness.
 
-use super::told::{Recording, Table};
+use super::told::{Recording, Table, wrapped};
 use crate::outcome::Outcome;
 use crate::store::write_whole;
 use anyhow::{Context, Result, bail};
@@ -60,7 +60,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     let text: Vec<String> = tables.iter().map(Table::markdown).collect();
     write_whole(
         &folder.join("tables.md"),
-        format!("{}\n{}", heading(&recording), text.join("\n")).as_bytes(),
+        format!("{}\n\n{}", wrapped(&heading(&recording)), text.join("\n")).as_bytes(),
     )?;
     let figure = barometer_figure(&points(&recording))?;
     write_whole(&folder.join("speed-and-correctness.svg"), figure.svg.as_bytes())?;
@@ -84,7 +84,7 @@ fn heading(recording: &Recording) -> String {
     let about = &recording.about;
     let date = if about.date.is_empty() { "no date" } else { &about.date };
     format!(
-        "Recorded on {date}, on {} CPUs of {}, {} rounds. Each engine has one thread. Times hold for this machine.\n",
+        "Recorded on {date}, on {} CPUs of {}, {} rounds. Each engine has one thread. Times hold for this machine.",
         about.cpus, about.cpu, about.rounds
     )
 }

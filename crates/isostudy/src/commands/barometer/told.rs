@@ -83,7 +83,8 @@ impl Table {
     }
 }
 
-fn wrapped(words: &str) -> String {
+/// In lines of a hundred characters.
+pub(super) fn wrapped(words: &str) -> String {
     let mut text = String::new();
     let mut column = 0;
     for word in words.split(' ') {
@@ -160,15 +161,16 @@ impl Recording {
         };
         let count = ranking.workloads.len();
         let mut words = format!(
-            "1 would be the best on each workload. Scores are geometric means over the {count} workloads that all of these engines passed; \
-             intervals are at 95 % over surfaces. Engines that are not distinguished share a rank."
+            "1 would be the best on each workload. Scores are geometric means over the {count} workloads that all of these engines passed. \
+             Intervals are at 95 % over surfaces. Engines that are not distinguished share a rank, and so do all between them. *Behind* says \
+             behind how many engines one is shown to be."
         );
         if quantity == Quantity::Time {
             let [low, high] = self.about.noise;
             _ = write!(
                 words,
-                " One engine in two processes differed by {low:.2} to {high:.2} on nine of ten workloads. Its two scores may differ by {:.3}, so that engines \
-                 nearer to each other share a rank.",
+                " One engine in two processes differed by {low:.2} to {high:.2} on nine of ten workloads. Engines whose scores differ by less than \
+                 {:.3} are not distinguished, since its two scores may.",
                 self.about.noise_of_scores
             );
         }
@@ -186,7 +188,7 @@ impl Recording {
         Some(Table {
             title: format!("By {}, {given}", quantity.words()),
             words,
-            head: vec!["rank", "engine", "score", "95 %"],
+            head: vec!["rank", "engine", "behind", "score", "95 %"],
             rows: ranking
                 .standings
                 .iter()
@@ -194,6 +196,7 @@ impl Recording {
                     vec![
                         of.rank.to_string(),
                         self.name(&of.engine),
+                        ranking.told.iter().filter(|(_, worse)| *worse == of.engine).count().to_string(),
                         format!("{:.2}", of.score),
                         format!("{:.2} to {:.2}", of.low, of.high),
                     ]
@@ -240,11 +243,11 @@ impl Recording {
         Table {
             title: "Who is right".into(),
             words: format!(
-                "Of the workloads: those with the right mesh, with a wrong one that a second check confirmed, with one that it has not \
-                 confirmed, with none, and not asked. Of up to {grids} random grids of 4 x 4 x 4 samples, as many as it can do in 20 s: \
-                 those with the exact topology of the trilinear interpolant, those whose mesh is a closed manifold, and those with both. \
-                 {tunnels} of these grids have a cell with a tunnel. A method that promises no such topology is not wrong to lack it. \
-                 Engines with an asterisk are made by the makers of the barometer."
+                "The first columns count workloads. *Right* and *wrong* are meshes; a wrong one is *unconfirmed* until a second check finds the same. \
+                 *Failed* is an answer without a mesh. The last columns are of random grids of 4 x 4 x 4 samples, of which there are {grids}. An engine \
+                 gets as many as it can do in 20 s. *Topology* is the share with the exact topology of the trilinear interpolant. *Closed manifold* is \
+                 the share whose mesh is one, and *both* has both. {tunnels} grids have a cell with a tunnel. A method that does not promise this \
+                 topology is not wrong to lack it. The makers of the barometer make the engines with an asterisk."
             ),
             head: vec![
                 "engine",
