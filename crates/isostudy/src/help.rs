@@ -44,7 +44,7 @@ const GROUPS: [(&str, &[(&str, &str)]); 4] = [
             ("distance", "isostudy distance coarse.ply fine.ply"),
             ("verify", "isostudy verify head.ply --volume head.nrrd --isovalue 300.5"),
             ("table", "isostudy table mc --groups"),
-            ("barometer", "isostudy barometer rank results/published/barometer/2026-11-28"),
+            ("barometer", "isostudy barometer rank results/barometer"),
         ],
     ),
 ];

@@ -20,7 +20,7 @@ docs/barometer.md says what is measured, what is not, and how to add an engine.
 Examples:
   isostudy barometer run configs/barometer --quick --allow-programs -o results/barometer
   isostudy barometer rank results/barometer --group hard --engine vtk-flying-edges --engine mc33
-  isostudy barometer compare results/published/barometer/2026-11-28 results/barometer")]
+  isostudy barometer compare results/published/barometer/2026-11-28-quick results/barometer")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     verb: Verb,

@@ -3,7 +3,7 @@
 use super::told::Recording;
 use crate::outcome::Outcome;
 use crate::terminal::say;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use clap::Args;
 use isostudy_barometer::agreement::Agreement;
 use isostudy_barometer::engine::Takes;
@@ -23,7 +23,16 @@ pub(super) struct Arguments {
 /// # Errors
 /// If a recording cannot be read.
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
-    let [one, other] = [&arguments.one, &arguments.other].map(|folder| Recording::read(folder));
+    let folders = [&arguments.one, &arguments.other];
+    let no_recordings: Vec<_> = folders
+        .iter()
+        .filter(|path| !path.join("about.toml").is_file())
+        .map(|path| path.display().to_string())
+        .collect();
+    if !no_recordings.is_empty() {
+        bail!("{}: no recording, which has a file about.toml", no_recordings.join(", "));
+    }
+    let [one, other] = folders.map(|folder| Recording::read(folder));
     let (one, other) = (one?, other?);
     let (mut agrees, mut told) = (true, 0);
     say("| quantity | given | told by both, in one order | in opposite order | told by one alone |")?;

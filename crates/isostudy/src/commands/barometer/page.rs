@@ -24,6 +24,8 @@ pub(super) struct Arguments {
 const BEGIN: &str = "<!-- barometer -->";
 const END: &str = "<!-- end of barometer -->";
 
+/// The largest page that tables are put into.
+const LARGEST_PAGE: u64 = 16 << 20;
 /// Ranks over fewer workloads are not shown.
 const LEAST_WORKLOADS: usize = 3;
 
@@ -34,17 +36,25 @@ const PAGE: &str = include_str!("page.html");
 /// # Errors
 /// If it cannot be read, or a file cannot be written.
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
+    // Before anything is written.
+    let into = arguments.into.as_ref().map(|path| parts(path).map(|parts| (path, parts))).transpose()?;
     write(&arguments.recording)?;
-    if let Some(path) = &arguments.into {
-        let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
-        let parts = text.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
-        let Some((before, after)) = parts else {
-            bail!("{}: there are no marks {BEGIN} and {END}", path.display());
-        };
+    if let Some((path, [before, after])) = into {
         let tables = std::fs::read_to_string(arguments.recording.join("tables.md"))?;
         write_whole(path, format!("{before}{BEGIN}\n\n{tables}\n{END}{after}").as_bytes())?;
     }
     Ok(Outcome::Done)
+}
+
+/// What stands before and after the two marks of a page.
+fn parts(path: &Path) -> Result<[String; 2]> {
+    let bytes = isostudy_foreign::bytes(path, LARGEST_PAGE).with_context(|| path.display().to_string())?;
+    let text = String::from_utf8(bytes).with_context(|| path.display().to_string())?;
+    let parts = text.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
+    match parts {
+        Some((before, after)) => Ok([before.to_owned(), after.to_owned()]),
+        None => bail!("{}: there are no marks {BEGIN} and {END}", path.display()),
+    }
 }
 
 /// Writes `tables.md`, `speed-and-correctness.svg` and `.png`, and `index.html`.
