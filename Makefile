@@ -60,7 +60,7 @@ barometer: bunny cache/engines/installed target/peers/release/peers-worker ## ju
 	-cache/engines/bin/python scripts/barometer/confirm.py results/barometer >results/barometer/confirm.log
 	target/release/isostudy barometer report results/barometer
 
-barometer-quick: bunny cache/engines/installed target/peers/release/peers-worker ## the same of the 15 fastest extractors on 23 workloads, into results/barometer-quick/
+barometer-quick: bunny cache/engines/installed target/peers/release/peers-worker ## the same of 14 extractors on 23 workloads, into results/barometer-quick/
 	$(BAROMETER) --quick -o results/barometer-quick
 	-cache/engines/bin/python scripts/barometer/confirm.py results/barometer-quick >results/barometer-quick/confirm.log
 	target/release/isostudy barometer report results/barometer-quick

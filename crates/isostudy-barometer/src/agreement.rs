@@ -5,11 +5,11 @@ use crate::ranks::Ranking;
 /// How two rankings of one quantity agree.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Agreement {
-    /// Pairs that both tell apart, and in the same order.
+    /// Pairs that both distinguish, and in the same order.
     pub same: usize,
-    /// Pairs that both tell apart, in opposite order: the better one by the first recording first.
+    /// Pairs that both distinguish, in opposite order: the better one by the first recording first.
     pub opposite: Vec<(String, String)>,
-    /// Pairs that one of them tells apart and the other does not.
+    /// Pairs that one of them distinguishes and the other does not.
     pub one_alone: usize,
 }
 

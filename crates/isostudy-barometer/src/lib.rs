@@ -5,7 +5,7 @@
 //! - [`judge`](judge()): a mesh held against a workload's truth. A mesh that is wrong gives no time to any rank.
 //! - [`packed`]: many small random grids in one volume, each held against its exact trilinear topology.
 //! - [`recording`]: what one run found, as CSV files.
-//! - [`ranks`]: engines in order, with intervals over workloads; those that are not told apart share a rank.
+//! - [`ranks`]: engines in order, with intervals over workloads; those that are not distinguished share a rank.
 //! - [`agreement`]: whether two recordings agree in all that both tell.
 //!
 //! Nothing here starts a program or reads a clock: the command does.

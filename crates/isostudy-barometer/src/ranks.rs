@@ -71,13 +71,13 @@ impl Quantity {
 pub struct Standing {
     /// Which.
     pub engine: String,
-    /// From 1 on; the same for all that are not told apart.
+    /// From 1 on; the same for all that are not distinguished.
     pub rank: u32,
     /// The geometric mean of its ratios to the least.
     pub score: f64,
-    /// 95 % over workloads.
+    /// The lower end of its interval, 95 % over surfaces.
     pub low: f64,
-    /// 95 % over workloads.
+    /// The upper end.
     pub high: f64,
 }
 
@@ -92,7 +92,7 @@ pub struct Ranking {
     pub standings: Vec<Standing>,
     /// Those that passed too few workloads to be compared, and how many they passed.
     pub left_out: Vec<(String, usize)>,
-    /// Pairs that are told apart, the better one first.
+    /// Pairs that are distinguished, the better one first.
     pub told: BTreeSet<(String, String)>,
 }
 
@@ -224,7 +224,7 @@ mod tests {
 
     /// Times are 1, 2 and 2 give or take a tenth; the first is told from the others, and these are not from each other.
     #[test]
-    fn what_is_not_told_apart_shares_a_rank() {
+    fn what_is_not_distinguished_shares_a_rank() {
         let mut rows = Vec::new();
         for w in 0..20 {
             let wobble = 1.0 + 0.1 * ((w * 7 % 11) as f64 / 5.0 - 1.0);

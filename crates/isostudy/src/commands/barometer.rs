@@ -32,7 +32,7 @@ enum Verb {
     Run(run::Arguments),
     /// Print ranks of a recording, of any engines and workloads
     Rank(told::Arguments),
-    /// Say whether two recordings agree in the order of all engines that both tell apart; exit 1 if not
+    /// Say whether two recordings agree in the order of all engines that both distinguish; exit 1 if not, or if there are none
     Compare(compare::Arguments),
     /// Write the tables and the page of a recording again
     Report(page::Arguments),

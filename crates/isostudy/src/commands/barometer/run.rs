@@ -10,7 +10,7 @@ use crate::store::{remove_if_there, sha256, sha256_of_file, write_whole};
 use crate::terminal::counted;
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use isostudy_barometer::engine::Engine;
+use isostudy_barometer::engine::{Engine, Takes, Ties};
 use isostudy_barometer::packed::{Conformance, Packed};
 use isostudy_barometer::ranks::{Quantity, rank};
 use isostudy_barometer::recording::{About, ConformanceRow, EngineRow, Row, State, write};
@@ -141,9 +141,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
                 about_engines.push(row_of(engine, &ready.version, ready.note.as_deref().unwrap_or(""), true));
                 engines.push(running);
             }
-            Err(error) => {
-                about_engines.push(row_of(engine, "", &error.to_string().replace('\n', " "), false))
-            }
+            Err(error) => about_engines.push(row_of(engine, "", &in_a_line(&error.to_string()), false)),
         }
     }
     for engine in missing {
@@ -185,7 +183,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
             license: String::new(),
             install: String::new(),
             family: String::new(),
-            takes: isostudy_barometer::engine::Takes::Samples,
+            takes: Takes::Samples,
             ours: false,
             note: absent.why.clone(),
             ran: false,
@@ -325,8 +323,7 @@ fn conformance(
     let packed: Vec<Packed> = (0..volumes).map(|volume| Packed::new(side, SEED + volume)).collect();
     let counted_path = out.join("parts/conformance.json");
     let with_tunnels = part(&counted_path, &(volumes, side), || {
-        let ties = isostudy_barometer::engine::Ties::Outside;
-        Ok(packed.iter().map(|packed| packed.with_tunnels(ties)).sum::<u64>())
+        Ok(packed.iter().map(|packed| packed.with_tunnels(Ties::Outside)).sum::<u64>())
     })?;
     let mut rows = Vec::new();
     if packed.is_empty() {
@@ -410,12 +407,12 @@ fn keep_grids(
     write_whole(&folder.join(format!("{}.ply", engine.id)), &file)
 }
 
-/// By what ratio the scores of one engine in two processes may differ: the end of the interval that is farther from 1.
+/// By what ratio the scores of one engine in two processes may differ: at most from the lower end of one interval to the upper end of the
+/// other, which is more than the interval of the ratio.
 fn noise_of_scores(rows: &[Row], ids: [&String; 2]) -> f64 {
     let rows: Vec<Row> = rows.iter().filter(|row| ids.contains(&&row.engine)).cloned().collect();
     let ranking = rank(&rows, Quantity::Time, 0.0, 1.0, SEED);
     let [one, other] = ids.map(|id| ranking.standings.iter().find(|of| of.engine == *id));
-    // One of the two is the least on each workload, so that the ratio of the scores is that of the engines.
     one.zip(other).map_or(1.0, |(one, other)| (one.high / other.low).max(other.high / one.low))
 }
 
