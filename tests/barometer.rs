@@ -123,6 +123,7 @@ fn our_own_engines_are_right() {
     let out = out.to_str().unwrap();
     let compared = isostudy(place.path(), &["barometer", "compare", out, out]);
     assert_eq!(compared.code, Some(0), "a recording agrees with itself: {}", compared.stderr);
+    the_order_of_times_turns(place.path(), out);
     let ranks = isostudy(
         place.path(),
         &["barometer", "rank", out, "--group", "chunks", "--engine", "mc", "--engine", "mc33"],
@@ -134,6 +135,58 @@ fn our_own_engines_are_right() {
     );
     let unknown = isostudy(place.path(), &["barometer", "rank", out, "--engine", "mc34"]);
     assert!(unknown.code == Some(2) && unknown.stderr.contains("mc34"), "{}", unknown.stderr);
+}
+
+/// A recording with the times of two engines exchanged, a thousandfold apart, is in disagreement with one in which they are the other way
+/// round; but for times of builds of two profiles, which are not compared.
+fn the_order_of_times_turns(place: &Path, out: &str) {
+    let turned = |name: &str, slow: &str| {
+        let folder = place.join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        for file in std::fs::read_dir(out).unwrap().map(|entry| entry.unwrap().path()) {
+            if file.is_file() {
+                std::fs::copy(&file, folder.join(file.file_name().unwrap())).unwrap();
+            }
+        }
+        let path = folder.join("measurements.csv");
+        let mut reader = csv::Reader::from_path(&path).unwrap();
+        let header = reader.headers().unwrap().clone();
+        let time = header.iter().position(|column| column == "time_s").unwrap();
+        let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.unwrap()).collect();
+        let mut writer = csv::Writer::from_path(&path).unwrap();
+        writer.write_record(&header).unwrap();
+        for row in rows {
+            let of = |cell: &str| cell.parse::<f64>().map(|s| s * if &row[3] == slow { 1e3 } else { 1.0 });
+            let cells = row.iter().enumerate().map(|(i, cell)| match (i == time, of(cell)) {
+                (true, Ok(slower)) => slower.to_string(),
+                _ => cell.to_owned(),
+            });
+            writer.write_record(cells).unwrap();
+        }
+        writer.flush().unwrap();
+        folder
+    };
+    let [one, other] = [turned("one", "mc"), turned("other", "mc33")];
+    let compare =
+        || isostudy(place, &["barometer", "compare", one.to_str().unwrap(), other.to_str().unwrap()]);
+    let disagree = compare();
+    assert_eq!(disagree.code, Some(1), "{}{}", disagree.stdout, disagree.stderr);
+    assert!(
+        disagree.stderr.contains("time: mc33 is before mc * in the first recording"),
+        "{}",
+        disagree.stderr
+    );
+    let about = other.join("about.toml");
+    let text = std::fs::read_to_string(&about).unwrap();
+    let line = text.lines().find(|line| line.starts_with("profile = ")).unwrap();
+    std::fs::write(&about, text.replace(line, "profile = \"release, opt-level 9\"")).unwrap();
+    let apart = compare();
+    assert_eq!(apart.code, Some(0), "{}{}", apart.stdout, apart.stderr);
+    assert!(
+        apart.stderr.contains("times are not compared") && !apart.stdout.contains("| time |"),
+        "{}",
+        apart.stdout
+    );
 }
 
 /// One flipped triangle, one lost, open seams, half a cell of displacement, a mesh that is too large, another answer when it is timed: each

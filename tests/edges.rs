@@ -76,6 +76,16 @@ impl TurnedBox {
     /// The mean distance from points of the twelve edges, evenly by length, to a mesh; in cells. Every triangle is tried.
     fn edges_to(&self, mesh: &TriangleMesh) -> f64 {
         let (mut sum, mut count) = (0.0, 0);
+        // Each triangle with a ball round it: what lies farther than the best so far is not looked at.
+        let triangles: Vec<_> = mesh
+            .triangles
+            .iter()
+            .map(|t| {
+                let of = t.map(|v| mesh.positions[v as usize].as_dvec3());
+                let centre = (of[0] + of[1] + of[2]) / 3.0;
+                (centre, of.map(|p| p.distance(centre)).into_iter().fold(0.0, f64::max), of)
+            })
+            .collect();
         for (c, axis) in
             (0..8).flat_map(|c| (0..3).map(move |axis| (c, axis))).filter(|(c, axis)| c >> axis & 1 == 0)
         {
@@ -83,8 +93,14 @@ impl TurnedBox {
             let points = (from.distance(to) / (0.1 * TURNED_SPACING)) as usize;
             for i in 0..points {
                 let p = from.lerp(to, (i as f64 + 0.5) / points as f64);
-                let corners = mesh.triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize].as_dvec3()));
-                sum += corners.map(|of| to_triangle(p, of)).fold(f64::INFINITY, f64::min);
+                let mut best = f64::INFINITY;
+                for (centre, radius, of) in &triangles {
+                    if (best + radius).is_infinite() || p.distance_squared(*centre) < (best + radius).powi(2)
+                    {
+                        best = best.min(to_triangle(p, *of));
+                    }
+                }
+                sum += best;
             }
             count += points;
         }

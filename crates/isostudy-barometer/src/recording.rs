@@ -114,6 +114,9 @@ pub struct About {
     pub cpus: u32,
     /// The commit of isostudy.
     pub commit: String,
+    /// How isostudy was built: other optimisation, other times of its own engines. Empty where that was not recorded.
+    #[serde(default)]
+    pub profile: String,
     /// Rounds of each time.
     pub rounds: u32,
     /// One engine in two processes: its time over its time, from the 5th to the 95th percentile over workloads. What is nearer to 1 than that

@@ -4,14 +4,13 @@
 //! bound to absolute paths: the same script beside other modules is another program.
 
 use crate::recipe::{self, Recipe};
-use crate::store::write_whole;
+use crate::store::{Digests, write_whole};
 use anyhow::{Context, Result, bail};
 use isostudy_design::Study;
 use isostudy_design::record::Purpose;
 use isostudy_foreign::shown_in_a_line;
 use isostudy_program::Program;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Read};
 use std::path::{Path, PathBuf};
@@ -128,12 +127,12 @@ fn programs(study: &Study) -> Result<Vec<(String, Program)>> {
 }
 
 fn wanted(programs: &[(String, Program)], sandbox: bool, record: &Record) -> Result<Vec<Wanted>> {
-    let mut all = Vec::new();
+    let (mut all, mut digests) = (Vec::new(), Digests::default());
     for (name, program) in programs {
         let words = program.words()?;
         let mut files = BTreeMap::new();
         for path in words.iter().map(Path::new).filter(|path| path.is_absolute() && path.is_file()) {
-            files.insert(path.display().to_string(), sha256_of(path)?);
+            files.insert(path.display().to_string(), digests.of(path)?);
         }
         let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
         let before = record.allowed.iter().find(|known| known.words == words).map(|known| &known.files);
@@ -147,18 +146,6 @@ fn wanted(programs: &[(String, Program)], sandbox: bool, record: &Record) -> Res
         all.push(Wanted { allowed: Allowed { words, sandbox, files }, told });
     }
     Ok(all)
-}
-
-fn sha256_of(path: &Path) -> Result<String> {
-    let mut file = isostudy_foreign::open(path)?;
-    let mut digest = Sha256::new();
-    let mut block = vec![0; 1 << 16];
-    loop {
-        match file.read(&mut block).with_context(|| path.display().to_string())? {
-            0 => return Ok(digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()),
-            read => digest.update(&block[..read]),
-        }
-    }
 }
 
 /// Where the user's state is kept (XDG Base Directory Specification 0.8); nowhere without a home.

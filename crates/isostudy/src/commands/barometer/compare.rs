@@ -35,10 +35,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
     let [one, other] = folders.map(|folder| Recording::read(folder));
     let (one, other) = (one?, other?);
     let (mut agrees, mut told) = (true, 0);
+    let profiles = [&one, &other].map(|recording| recording.about.profile.as_str());
+    let are_times_comparable = profiles[0] == profiles[1] || profiles.contains(&"");
+    if !are_times_comparable {
+        tell!(
+            "times are not compared: one recording is by a build of {}, the other of {}",
+            profiles[0],
+            profiles[1]
+        );
+    }
     say("| quantity | given | told by both, in one order | in opposite order | told by one alone |")?;
     say("|---|---|---:|---:|---:|")?;
     for takes in [Takes::Samples, Takes::Field] {
         for quantity in Quantity::ALL {
+            if quantity == Quantity::Time && !are_times_comparable {
+                continue;
+            }
             let found = Agreement::of(&one.ranking(quantity, takes), &other.ranking(quantity, takes));
             let given = if takes == Takes::Samples { "samples" } else { "a field" };
             let (same, opposite, alone) = (found.same, found.opposite.len(), found.one_alone);

@@ -6,7 +6,7 @@ use super::page;
 use crate::consent;
 use crate::machine;
 use crate::outcome::Outcome;
-use crate::store::{remove_if_there, sha256, sha256_of_file, write_whole};
+use crate::store::{Digests, remove_if_there, sha256, write_whole};
 use crate::terminal::counted;
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -67,6 +67,8 @@ pub(super) struct Arguments {
 struct Known {
     rows: Vec<EngineRow>,
     machine: String,
+    /// Of each file that a command names.
+    files: Vec<(PathBuf, String)>,
 }
 
 /// All that an engine's results depend on: its table, what it told, and the files that its command names.
@@ -82,8 +84,9 @@ struct Identity<'a> {
 impl Known {
     fn identity<'a>(&'a self, running: &'a Running) -> Result<Identity<'a>> {
         let engine = running.engine;
-        let files =
-            running.program.files()?.iter().map(|file| sha256_of_file(file)).collect::<Result<_>>()?;
+        let digest =
+            |file: PathBuf| self.files.iter().find(|(known, _)| *known == file).map(|(_, of)| of.clone());
+        let files = running.program.files()?.into_iter().filter_map(digest).collect();
         Ok(Identity {
             build: [env!("ISOSTUDY_COMMIT"), env!("ISOSTUDY_DIRTY")],
             machine: &self.machine,
@@ -167,8 +170,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
     let ours = engines.iter().position(|running| running.engine.ours).unwrap_or(0);
     let first = engines[ours].engine;
     let again = Engine { id: format!("{} again", first.id), ..first.clone() };
-    let known = Known { rows: about_engines.clone(), machine: machine::read().model.unwrap_or_default() };
     engines.push(Running { is_second: true, ..Running::start(&again, program(&again))? });
+    let (mut files, mut digests) = (Vec::new(), Digests::default());
+    for running in &engines {
+        for file in running.program.files()? {
+            let digest = digests.of(&file)?;
+            files.push((file, digest));
+        }
+    }
+    let machine = machine::read().model.unwrap_or_default();
+    let known = Known { rows: about_engines.clone(), machine, files };
 
     let rows = measure(out, &given, &mut engines, &known, rounds)?;
     let (conformance, with_tunnels) = conformance(out, &mut engines, &known, volumes, side)?;
@@ -197,6 +208,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
         cpu: machine.model.clone().unwrap_or_default(),
         cpus: std::thread::available_parallelism().map_or(0, usize::from) as u32,
         commit: machine.build.commit.clone().unwrap_or_default(),
+        profile: format!("{}, opt-level {}", machine.build.profile, machine.build.opt_level),
         rounds,
         noise,
         noise_of_scores,
