@@ -12,17 +12,21 @@
 //! It streams: sides; a layer behind, samples; another behind, the vertices of a layer of cells; then the quadrilaterals of the edges
 //! that begin at the points below it.
 
+#[cfg(feature = "dual-contouring")]
+mod clean;
 mod labels;
 mod octree;
 mod plan;
 mod quads;
 mod rectangles;
+mod region;
 mod relaxed;
 mod sharp;
 mod tangents;
 mod vertices;
 
 pub(crate) use labels::Placed;
+pub(crate) use plan::{Pattern, VertexPer};
 pub use labels::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
 pub(crate) use quads::{ROUND, is_other_better};
 pub(crate) use relaxed::MOST_SMOOTHING;
@@ -51,8 +55,9 @@ use crate::surface::trace::Trace;
 /// What decides a net.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Nets {
-    /// A vertex for each patch of a cell, rather than one in all.
-    pub(crate) patches: bool,
+    /// What a cell has one vertex for. With [`VertexPer::Loop`] nothing of the net passes through anything else of it; then there must be
+    /// tangent planes, and vertices stay in their cells.
+    pub(crate) vertex_per: VertexPer,
     /// Where tangent planes meet, rather than at the mean of crossings. Then there must be a field.
     pub(crate) sharp: Option<Sharp>,
     /// So many steps towards the linked vertices.
@@ -81,12 +86,20 @@ pub(crate) fn extract(
     let Nets { sharp, smoothing, tolerance, .. } = nets;
     let sharp_and_merged = sharp.filter(|_| tolerance > 0.0);
     let are_squares_merged = nets.blocks == Some(Blocks::Merged);
-    if smoothing == 0 && sharp_and_merged.is_none() && !are_squares_merged {
+    let is_clean = nets.vertex_per == VertexPer::Loop;
+    if smoothing == 0 && sharp_and_merged.is_none() && !are_squares_merged && !is_clean {
         return extract_unmoved(buffers, nets, run);
     }
-    // The trace says which cell a vertex is of. What is done afterwards needs all triangles.
     let mut own = Trace::default();
     let Run { request, progress, trace, extraction } = run;
+    #[cfg(feature = "dual-contouring")]
+    if is_clean {
+        let trace = trace.unwrap_or(&mut own);
+        let run = Run { request, progress, trace: Some(&mut *trace), extraction: &mut *extraction };
+        extract_unmoved(buffers, nets, run)?;
+        return clean::clean(request, trace, extraction);
+    }
+    // The trace says which cell a vertex is of. What is done afterwards needs all triangles.
     let request = &Request { part: None, normals: NormalsOf::Triangles, ..*request };
     let trace = trace.unwrap_or(&mut own);
     let run = Run { request, progress, trace: Some(&mut *trace), extraction: &mut *extraction };
@@ -105,10 +118,10 @@ pub(crate) fn extract(
 
 fn extract_unmoved(
     (kept, workspaces): (&mut Kept, &mut Vec<Workspace>),
-    Nets { patches, sharp, blocks, .. }: Nets,
+    Nets { vertex_per, sharp, blocks, .. }: Nets,
     run: Run,
 ) -> Result<(), ExtractError> {
-    let (request, table) = (run.request, Table::get(patches));
+    let (request, table) = (run.request, Table::get(vertex_per));
     let placer = Placer::new(request.lattice, request.settings, None);
     let grid = kept.grid(request, 1)?;
     // By tangent planes, if there is a field to have them.
@@ -198,6 +211,9 @@ impl Streamed for Net<'_> {
         }
         if let Some(keys) = &mut slab.vertices.keys {
             keys.drain(..below);
+        }
+        if self.table.has_loops() && !slab.vertices.patterns.is_empty() {
+            slab.vertices.patterns.drain(..below);
         }
     }
 }

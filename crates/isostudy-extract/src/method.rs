@@ -128,6 +128,8 @@ pub struct Promises {
     pub manifold: bool,
     /// The mesh has no boundary where the surface stays clear of the box.
     pub closed_off_the_box: bool,
+    /// No triangle has more in common with another one than vertices and sides that both have.
+    pub no_intersections: bool,
     /// Triangles are the same, number by number, wherever vertices are placed; only positions and normals change.
     pub same_triangles_for_all_placements: bool,
     /// Boxes of cells that fill the grid, extracted one by one, weld to the mesh of the whole, to the byte.

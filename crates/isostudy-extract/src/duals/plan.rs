@@ -6,6 +6,8 @@ use std::sync::OnceLock;
 use glam::{BVec4A, Vec3};
 use isostudy_cells::Cell;
 
+use super::region::Region;
+
 /// Edges of a cube.
 pub(super) const EDGES: usize = 12;
 /// Faces of a cube: low and high along x, y and z.
@@ -27,11 +29,44 @@ pub(super) struct Mean {
     pub(super) at_high_ends: Vec3,
 }
 
+/// What a cell has one vertex for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum VertexPer {
+    /// Itself.
+    Cell,
+    /// Each run of quadrilaterals along a loop of surface round it. But for cells at the box that is a loop.
+    Run,
+    /// Each loop of surface round it, with what is known of the loop.
+    Loop,
+}
+
+/// A loop of surface round a cell.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Loop {
+    /// The edges that it crosses, counter-clockwise seen from outside of the solid, or clockwise: as [`Cell::loops`] has them.
+    pub(super) edges: Vec<u8>,
+    /// The edges without a quadrilateral, one bit each.
+    pub(super) open: u16,
+    /// The part of the cell that is the loop's own.
+    pub(super) region: Region,
+}
+
+impl Loop {
+    /// Whether its quadrilaterals are several runs, which have nothing but the vertex in common.
+    pub(super) fn is_cut(&self) -> bool {
+        let is_open = |edge: u8| self.open >> edge & 1 != 0;
+        let ends = |i: usize| !is_open(self.edges[i]) && is_open(self.edges[(i + 1) % self.edges.len()]);
+        (0..self.edges.len()).filter(|&i| ends(i)).count() > 1
+    }
+}
+
 /// The vertices of a cell.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Plan {
     /// One for each vertex.
     pub(super) means: Vec<Mean>,
+    /// The loop of each vertex, with a vertex [per loop](VertexPer::Loop).
+    pub(super) loops: Vec<Loop>,
     /// The vertex of each edge that has a quadrilateral; 0 for others.
     of_edge: [u8; EDGES],
 }
@@ -47,7 +82,7 @@ impl Plan {
 /// The plans of all cells there can be, but for those at the box.
 pub(super) struct Table {
     cube: Cell,
-    patches: bool,
+    vertex_per: VertexPer,
     /// The corner that an edge begins at, and its axis.
     edges: [(u8, u8); EDGES],
     /// By axis and the corner that an edge begins at.
@@ -61,13 +96,13 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// With a vertex in each cell, or one for each loop of surface in it; made when it is first asked for.
-    pub(super) fn get(patches: bool) -> &'static Self {
-        static TABLES: [OnceLock<Table>; 2] = [const { OnceLock::new() }; 2];
-        TABLES[usize::from(patches)].get_or_init(|| Self::new(patches))
+    /// Made when it is first asked for.
+    pub(super) fn get(vertex_per: VertexPer) -> &'static Self {
+        static TABLES: [OnceLock<Table>; 3] = [const { OnceLock::new() }; 3];
+        TABLES[vertex_per as usize].get_or_init(|| Self::new(vertex_per))
     }
 
-    fn new(patches: bool) -> Self {
+    fn new(vertex_per: VertexPer) -> Self {
         let cube = Cell::cube();
         let edges = std::array::from_fn(|e| {
             let [low, high] = cube.edges()[e];
@@ -82,7 +117,7 @@ impl Table {
             cube.faces().iter().position(|face| face.iter().all(is_on)).expect("a cube has six faces")
         });
         let mut table =
-            Self { cube, patches, edges, numbers, faces, joinable: Vec::new(), plans: Vec::new() };
+            Self { cube, vertex_per, edges, numbers, faces, joinable: Vec::new(), plans: Vec::new() };
         table.joinable = (0..=255).map(|inside| table.find_joinable(inside)).collect();
         let of = |number: usize| {
             let (inside, face) = (number / (FACES + 1), number % (FACES + 1));
@@ -107,13 +142,19 @@ impl Table {
     /// The face on which a cell would join its inside corners if the cell on the other side of it did the same.
     #[inline]
     pub(super) fn joinable(&self, inside: u8) -> Option<u8> {
-        if self.patches { self.joinable[usize::from(inside)] } else { None }
+        if self.has_patches() { self.joinable[usize::from(inside)] } else { None }
     }
 
     /// Whether a cell has a vertex for each loop of surface in it.
     #[inline]
     pub(super) fn has_patches(&self) -> bool {
-        self.patches
+        self.vertex_per != VertexPer::Cell
+    }
+
+    /// Whether it says what loops its cells have.
+    #[inline]
+    pub(super) fn has_loops(&self) -> bool {
+        self.vertex_per == VertexPer::Loop
     }
 
     /// The corner that an edge begins at, and its axis.
@@ -158,7 +199,23 @@ impl Table {
         };
         let loops = self.cube.loops(u32::from(inside), joined);
         let mut plan = Plan::default();
-        if !self.patches {
+        if self.vertex_per == VertexPer::Loop {
+            for (i, edges) in loops.iter().enumerate() {
+                if edges.iter().all(|&edge| is_open(edge)) {
+                    continue;
+                }
+                for &edge in edges {
+                    plan.of_edge[usize::from(edge)] = plan.means.len() as u8;
+                }
+                let others = loops.iter().enumerate().filter(|(other, _)| *other != i).map(|(_, other)| &other[..]);
+                let open = edges.iter().filter(|&&edge| is_open(edge)).fold(0, |set, edge| set | 1 << edge);
+                let region = Region::of(edges, others, |edge| self.edge(edge));
+                plan.means.push(self.mean(edges));
+                plan.loops.push(Loop { edges: edges.clone(), open, region });
+            }
+            return plan;
+        }
+        if !self.has_patches() {
             let crossed = loops.concat();
             if crossed.iter().any(|&edge| !is_open(edge)) {
                 plan.means.push(self.mean(&crossed));
@@ -182,6 +239,28 @@ impl Table {
             }
         }
         plan
+    }
+}
+
+/// Which plan a vertex is of, and which of its vertices it is: what a trace keeps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct Pattern(u32);
+
+impl Pattern {
+    pub(super) fn new(inside: u8, joined: Option<u8>, at_box: u8, vertex: usize) -> Self {
+        let joined = u32::from(joined.unwrap_or(FACES as u8));
+        Self(u32::from(inside) | joined << 8 | u32::from(at_box) << 11 | (vertex as u32) << 17)
+    }
+
+    /// As [`Plans::number`] takes them.
+    pub(super) fn cell(self) -> (u8, Option<u8>, u8) {
+        let joined = (self.0 >> 8 & 7) as u8;
+        (self.0 as u8, (usize::from(joined) < FACES).then_some(joined), (self.0 >> 11 & 63) as u8)
+    }
+
+    /// The number of the vertex.
+    pub(super) fn vertex(self) -> usize {
+        (self.0 >> 17) as usize
     }
 }
 
@@ -222,7 +301,7 @@ impl Plans {
     /// Which of a plan's vertices a crossed edge leads to.
     #[inline]
     pub(super) fn vertex(&self, number: u32, edge: u8) -> u32 {
-        if !self.table.patches {
+        if !self.table.has_patches() {
             // There is one.
             return 0;
         }
@@ -240,7 +319,7 @@ mod tests {
     /// Patterns with so many patches: 2, 162, 82, 8, 2 (Nielson 2004); 36 have a face to join, one each.
     #[test]
     fn patterns_have_the_patches_that_are_known() {
-        let table = Table::get(true);
+        let table = Table::get(VertexPer::Run);
         let mut patches = [0; 5];
         (0..=255u8).for_each(|inside| patches[table.plan(inside, None, 0).means.len()] += 1);
         assert_eq!(patches, [2, 162, 82, 8, 2]);
@@ -249,13 +328,13 @@ mod tests {
             assert_eq!(table.cube.ambiguous_faces(u32::from(inside)).count_ones(), 1);
             assert_eq!(table.plan(inside, table.joinable(inside), 0).means.len(), 2);
         }
-        assert_eq!((0..=255).filter(|&inside| Table::get(false).joinable(inside).is_some()).count(), 0);
+        assert_eq!((0..=255).filter(|&inside| Table::get(VertexPer::Cell).joinable(inside).is_some()).count(), 0);
     }
 
     #[test]
     fn every_crossing_is_in_the_mean_of_its_edges_vertex() {
-        for patches in [false, true] {
-            let table = Table::get(patches);
+        for vertex_per in [VertexPer::Cell, VertexPer::Run, VertexPer::Loop] {
+            let table = Table::get(vertex_per);
             for inside in 0..=255u8 {
                 for at_box in [0, 1, 2, 5, 63] {
                     let plan = table.plan(inside, None, at_box);
@@ -276,7 +355,7 @@ mod tests {
     /// Of the 4,096 patterns of two neighbours 18 have a face that both join, along each axis.
     #[test]
     fn eighteen_patterns_of_two_cells_join_their_face() {
-        let table = Table::get(true);
+        let table = Table::get(VertexPer::Run);
         for axis in 0..3 {
             let joined = |pattern: &u32| {
                 // Three layers of four points along the axis.

@@ -4,7 +4,8 @@ use std::collections::TryReserveError;
 
 use glam::{DVec3, Vec3, Vec4};
 
-use super::plan::{EDGE_STARTS, EDGES, Mean, Plans};
+use super::plan::{EDGE_STARTS, EDGES, Mean, Pattern, Plans};
+use super::region::Region;
 use super::sharp::Sharp;
 use super::tangents::{Tangent, Tangents};
 use crate::cubes::grid::CubeGrid;
@@ -12,11 +13,17 @@ use crate::cubes::records::Records;
 use crate::cubes::sampling::Samples;
 use crate::cubes::vertices::{Placer, corner_of, outward};
 use crate::lattice::Part;
+use crate::memory::push;
 use crate::sampling::bits::between;
 use crate::sampling::in_sight::Values;
 use crate::sampling::rows::next;
 use crate::slabs::Vertices;
 use crate::surface::trace::VertexKey;
+
+/// How far a vertex stays within the region of its loop, in edges of the cell.
+pub(super) const MARGIN: f64 = 1.0 / 1024.0;
+/// How far from the ends of their edges crossings count whose mean is certain to be in the region.
+const ANCHOR: f64 = 1.0 / 16.0;
 
 /// What is known of a crossed cell: its vertices are numbered from `first` on.
 #[derive(Debug, Clone, Copy, Default)]
@@ -87,7 +94,8 @@ impl VertexPass<'_> {
                     let is_beside = is_row_beside || x < first[0];
                     // Where a cell without patches is beside the part, its vertex is there if a quadrilateral needs it.
                     let at_box = if is_beside && !plans.table.has_patches() { 0 } else { self.at_box(cell) };
-                    let plan = plans.number(inside, self.joined(plans, cell, inside), at_box);
+                    let joined = self.joined(plans, cell, inside);
+                    let plan = plans.number(inside, joined, at_box);
                     let mut numbers = 0..plans.at(plan).means.len();
                     if is_beside {
                         let needed = self.needed(plans, plan, cell, inside);
@@ -120,13 +128,19 @@ impl VertexPass<'_> {
                                 position
                             }
                             #[cfg(feature = "dual-contouring")]
-                            Some((sharp, tangents)) => self.meeting(plans, cell, mean.set, *sharp, tangents),
+                            Some((sharp, tangents)) => {
+                                let region = plans.at(plan).loops.get(number).map(|of| of.region);
+                                self.meeting(plans, cell, (mean.set, region), *sharp, tangents)
+                            }
                             #[cfg(not(feature = "dual-contouring"))]
                             Some(_) => unreachable!("planes are for dual contouring"),
                         };
                         vertices.positions.push(position);
                         if let Some(keys) = &mut vertices.keys {
                             keys.push(row_key.along_x(x).numbered(number));
+                            if plans.table.has_loops() {
+                                push(&mut vertices.patterns, Pattern::new(inside, joined, at_box, number))?;
+                            }
                         }
                     }
                 }
@@ -207,12 +221,12 @@ impl VertexPass<'_> {
         ((low + (high - low) * share).max(low).min(high), share)
     }
 
-    /// Where the tangent planes at the crossings of some edges meet.
+    /// Where the tangent planes at the crossings of some edges meet; in a region of the cell, if there is one.
     fn meeting(
         &self,
         plans: &Plans,
         cell: [usize; 3],
-        edges: u16,
+        (edges, region): (u16, Option<Region>),
         sharp: Sharp,
         tangents: &mut Tangents,
     ) -> Vec3 {
@@ -223,7 +237,17 @@ impl VertexPass<'_> {
             count += 1;
         }
         let [low, high] = [cell, cell.map(|i| i + 1)].map(|corner| self.grid.position(corner).as_dvec3());
-        sharp.vertex(&all[..count], low, high).as_vec3()
+        let point = sharp.vertex(&all[..count], low, high);
+        let Some(region) = region else { return point.as_vec3() };
+        let share = |at: DVec3| (at - low) / (high - low);
+        // Crossings near the ends of their edges may be on the planes of the region.
+        let inner = |at: DVec3| {
+            let [share, off] = [share(at), DVec3::splat(ANCHOR)];
+            let is_between = share.cmpgt(DVec3::ZERO) & share.cmplt(DVec3::ONE);
+            DVec3::select(is_between, share.clamp(off, 1.0 - off), share)
+        };
+        let anchor = all[..count].iter().map(|(at, _)| inner(*at)).sum::<DVec3>() / count as f64;
+        (low + region.nearest(anchor, share(point), MARGIN) * (high - low)).as_vec3()
     }
 
     /// The points that some edges of a cell begin at, their axes, and the samples at their ends.

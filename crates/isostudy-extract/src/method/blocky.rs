@@ -2,7 +2,7 @@
 
 use super::{Family, Method, Preset, Promises};
 use crate::builders::builders;
-use crate::duals::{Blocks, Nets};
+use crate::duals::{Blocks, Nets, VertexPer};
 use crate::extractor::Way;
 
 /// By name.
@@ -56,13 +56,14 @@ impl Default for Blocky {
 impl Family for Blocky {
     fn way(&self) -> Option<Way> {
         let blocks = Some(if self.merged { Blocks::Merged } else { Blocks::Single });
-        Some(Way::Nets(Nets { patches: false, sharp: None, smoothing: 0, tolerance: 0.0, blocks }))
+        Some(Way::Nets(Nets { vertex_per: VertexPer::Cell, sharp: None, smoothing: 0, tolerance: 0.0, blocks }))
     }
 
     fn promises(&self) -> Promises {
         Promises {
             manifold: false,
             closed_off_the_box: !self.merged,
+            no_intersections: false,
             same_triangles_for_all_placements: false,
             chunks: !self.merged,
             samples_suffice: true,

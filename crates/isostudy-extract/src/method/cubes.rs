@@ -97,6 +97,7 @@ impl Family for Cubes {
         Promises {
             manifold: true,
             closed_off_the_box: true,
+            no_intersections: false,
             same_triangles_for_all_placements: true,
             chunks: self.halo().is_some() && !self.refine_crossings,
             samples_suffice: !self.refine_crossings && !self.placement.calls_the_field(),

@@ -2,26 +2,28 @@
 
 use super::{Family, Method, MethodError, Preset, Promises};
 use crate::builders::builders;
-use crate::duals::{Nets, Sharp};
+use crate::duals::{Nets, Sharp, VertexPer};
 use crate::extractor::Way;
 
 const PLANES: &str = "Ju, Losasso, Schaefer & Warren 2002, on a uniform grid";
+const ENVELOPES: &str = "Ju & Udeshi 2006, on a uniform grid, with a vertex per sheet (Wenger 2013)";
 const PLANES_OF_PATCHES: &str = "Schaefer, Ju & Warren 2007, on a uniform grid; Wenger 2013";
 
 /// By name.
 pub(super) const PRESETS: &[Preset] = &[
-    named("dc", "dual contouring", [false, false], PLANES),
-    named("dc-manifold", "dual contouring (manifold)", [true, false], PLANES_OF_PATCHES),
-    named("dc-in-cell", "dual contouring in cells", [true, true], PLANES_OF_PATCHES),
+    named("dc", "dual contouring", [false, false, false], PLANES),
+    named("dc-manifold", "dual contouring (manifold)", [true, false, false], PLANES_OF_PATCHES),
+    named("dc-in-cell", "dual contouring in cells", [true, true, false], PLANES_OF_PATCHES),
+    named("dc-clean", "dual contouring (clean)", [true, true, true], ENVELOPES),
 ];
 
 const fn named(
     id: &'static str,
     label: &'static str,
-    [patches, in_cell]: [bool; 2],
+    [patches, in_cell, clean]: [bool; 3],
     source: &'static str,
 ) -> Preset {
-    let method = DualContouring { patches, truncation: 1e-3, in_cell, tolerance: 0.0 };
+    let method = DualContouring { patches, truncation: 1e-3, in_cell, clean, tolerance: 0.0 };
     Preset { id, label, method: Method::DualContouring(method), source }
 }
 
@@ -47,6 +49,10 @@ pub struct DualContouring {
     /// then cut off, by up to half a cube. Otherwise it may leave the cube by the length of an edge, and triangles may turn over; as
     /// published there is no bound, which gives spikes on rough surfaces.
     pub in_cell: bool,
+    /// Whether no triangle passes through another one. Where the quadrilateral of an edge would leave the tetrahedra between that edge and
+    /// its vertices, it gets vertices in the faces of its cubes or on the edge (Ju & Udeshi 2006). Needs `patches` and `in_cell`, and no
+    /// `tolerance`.
+    pub clean: bool,
     /// How far a vertex may be from the tangent plane at any crossing of its cell, in lengths of a lattice edge, where eight cells become
     /// one and theirs again, as far as the topology stays what it is. Triangles then are within a few times that of the surface, and few
     /// where it is flat. With 0, the default, cells stay as they are. The vertex of a larger cell stays in it, and cells at the box are
@@ -59,6 +65,7 @@ builders! {
         with_patches: patches: bool,
         with_truncation: truncation: f32,
         with_in_cell: in_cell: bool,
+        with_clean: clean: bool,
         with_tolerance: tolerance: f32,
     }
 }
@@ -66,7 +73,7 @@ builders! {
 impl DualContouring {
     /// As [`Default`].
     pub const fn new() -> Self {
-        Self { patches: false, truncation: 1e-3, in_cell: false, tolerance: 0.0 }
+        Self { patches: false, truncation: 1e-3, in_cell: false, clean: false, tolerance: 0.0 }
     }
 }
 
@@ -80,13 +87,19 @@ impl Default for DualContouring {
 impl Family for DualContouring {
     fn way(&self) -> Option<Way> {
         let sharp = Sharp { truncation: self.truncation, in_cell: self.in_cell };
-        Some(Way::Nets(Nets { patches: self.patches, sharp: Some(sharp), smoothing: 0, tolerance: self.tolerance, blocks: None }))
+        let vertex_per = match (self.patches, self.clean) {
+            (_, true) => VertexPer::Loop,
+            (true, false) => VertexPer::Run,
+            (false, false) => VertexPer::Cell,
+        };
+        Some(Way::Nets(Nets { vertex_per, sharp: Some(sharp), smoothing: 0, tolerance: self.tolerance, blocks: None }))
     }
 
     fn promises(&self) -> Promises {
         Promises {
             manifold: self.patches,
             closed_off_the_box: true,
+            no_intersections: self.clean,
             same_triangles_for_all_placements: false,
             chunks: self.tolerance == 0.0,
             samples_suffice: false,
@@ -98,7 +111,9 @@ impl Family for DualContouring {
         let share = "must be from 0 to 1, a share of the largest eigenvalue";
         MethodError::unless((0.0..=1.0).contains(&truncation), "truncation", truncation, share)?;
         let length = "must be 0 or more, in lengths of a lattice edge";
-        MethodError::unless(tolerance >= 0.0, "tolerance", tolerance, length)
+        MethodError::unless(tolerance >= 0.0, "tolerance", tolerance, length)?;
+        let goes_with = !self.clean || self.patches && self.in_cell && tolerance == 0.0;
+        MethodError::unless(goes_with, "clean", self.clean, "needs patches = true and in_cell = true, and no tolerance")
     }
 
     fn calls_the_field_always(&self) -> bool {

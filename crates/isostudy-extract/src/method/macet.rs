@@ -97,6 +97,7 @@ impl Family for Macet {
         Promises {
             manifold: true,
             closed_off_the_box: true,
+            no_intersections: false,
             same_triangles_for_all_placements: false,
             chunks: false,
             samples_suffice: false,

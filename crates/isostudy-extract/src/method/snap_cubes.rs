@@ -69,6 +69,7 @@ impl Family for SnapCubes {
         Promises {
             manifold: false,
             closed_off_the_box: true,
+            no_intersections: false,
             same_triangles_for_all_placements: false,
             chunks: true,
             samples_suffice: true,

@@ -2,7 +2,7 @@
 
 use super::{Family, Method, MethodError, Preset, Promises};
 use crate::builders::builders;
-use crate::duals::{MOST_SMOOTHING, Nets};
+use crate::duals::{MOST_SMOOTHING, Nets, VertexPer};
 use crate::extractor::Way;
 use crate::settings::{Clustering, ExtractSettings, Topology};
 
@@ -66,13 +66,14 @@ impl Default for SurfaceNets {
 
 impl Family for SurfaceNets {
     fn way(&self) -> Option<Way> {
-        Some(Way::Nets(Nets { patches: self.patches, sharp: None, smoothing: self.smoothing, tolerance: 0.0, blocks: None }))
+        Some(Way::Nets(Nets { vertex_per: if self.patches { VertexPer::Run } else { VertexPer::Cell }, sharp: None, smoothing: self.smoothing, tolerance: 0.0, blocks: None }))
     }
 
     fn promises(&self) -> Promises {
         Promises {
             manifold: self.patches,
             closed_off_the_box: true,
+            no_intersections: false,
             same_triangles_for_all_placements: false,
             chunks: true,
             samples_suffice: true,

@@ -168,6 +168,11 @@ impl Family for Tetrahedra {
         Promises {
             manifold: guarded && self.clustering != Clustering::Warp,
             closed_off_the_box: guarded,
+            // Each tetrahedron's triangles lie in it.
+            no_intersections: guarded
+                && self.clustering == Clustering::None
+                && self.placement == Placement::MeanOfCrossings
+                && indexed,
             // A warp has not all placements.
             same_triangles_for_all_placements: !collapses && self.clustering != Clustering::Warp,
             chunks: indexed && !self.refine_crossings && moved_in_chunks,

@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use glam::Vec3;
 
+#[cfg(feature = "_duals")]
+use crate::duals::Pattern;
 use crate::extraction::ExtractError;
 use crate::lattice::{Lattice, Part};
 use crate::memory::push;
@@ -72,6 +74,9 @@ pub(crate) struct Vertices {
     pub(crate) normals: Vec<Vec3>,
     /// Where they are asked for.
     pub(crate) keys: Option<Vec<VertexKey>>,
+    /// As [`Trace::patterns`](crate::surface::trace::Trace::patterns).
+    #[cfg(feature = "_duals")]
+    pub(crate) patterns: Vec<Pattern>,
     /// Whether some are not of the part that is asked for.
     pub(crate) has_spare: bool,
     /// Lattice edges of the slab's own layers that cross the surface, seen from either end.
@@ -86,6 +91,8 @@ impl Vertices {
             targets: std::mem::take(&mut piece.targets),
             normals: std::mem::take(&mut piece.normals),
             keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
+            #[cfg(feature = "_duals")]
+            patterns: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.patterns)).unwrap_or_default(),
             ..Self::default()
         }
     }
@@ -131,6 +138,10 @@ impl Vertices {
         piece.crossing_ends = self.crossing_ends;
         if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, self.keys) {
             (trace.keys, trace.has_spare) = (keys, self.has_spare);
+            #[cfg(feature = "_duals")]
+            {
+                trace.patterns = self.patterns;
+            }
         }
     }
 }

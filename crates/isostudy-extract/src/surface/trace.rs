@@ -2,6 +2,8 @@
 
 use std::collections::TryReserveError;
 
+#[cfg(feature = "_duals")]
+use crate::duals::Pattern;
 use crate::lattice::{Arrangement, Part, cell_of_stored};
 
 /// Which crossings of a lattice a vertex stands for: the sample point that they are nearest to, and the first lattice edge
@@ -128,6 +130,9 @@ impl VertexKey {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Trace {
     pub(crate) keys: Vec<VertexKey>,
+    /// Of vertices that stand for loops of surface, which; none of others.
+    #[cfg(feature = "_duals")]
+    pub(crate) patterns: Vec<Pattern>,
     /// Numbers of cells in the part that was extracted, or of all.
     pub(crate) cells: Vec<u32>,
     /// The part, where nothing but it was extracted.
@@ -153,6 +158,11 @@ impl Trace {
         self.cells.try_reserve(other.cells.len())?;
         self.keys.append(&mut other.keys);
         self.cells.append(&mut other.cells);
+        #[cfg(feature = "_duals")]
+        {
+            self.patterns.try_reserve(other.patterns.len())?;
+            self.patterns.append(&mut other.patterns);
+        }
         self.has_spare |= other.has_spare;
         Ok(())
     }
@@ -161,6 +171,8 @@ impl Trace {
     pub(crate) fn start(&mut self, part: Option<Part>) {
         self.keys.clear();
         self.cells.clear();
+        #[cfg(feature = "_duals")]
+        self.patterns.clear();
         (self.part, self.has_spare) = (part, false);
     }
 }

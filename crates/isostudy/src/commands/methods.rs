@@ -21,7 +21,7 @@ struct Promise {
     is_made: fn(&Promises) -> bool,
 }
 
-const PROMISES: [Promise; 5] = [
+const PROMISES: [Promise; 6] = [
     Promise {
         key: "manifold",
         word: "manifold",
@@ -33,6 +33,12 @@ const PROMISES: [Promise; 5] = [
         word: "closed",
         meaning: "no boundary where the surface stays clear of the box",
         is_made: |of| of.closed_off_the_box,
+    },
+    Promise {
+        key: "no_intersections",
+        word: "no intersections",
+        meaning: "no triangle meets another one but at vertices and sides that both have",
+        is_made: |of| of.no_intersections,
     },
     Promise {
         key: "same_triangles_for_all_placements",

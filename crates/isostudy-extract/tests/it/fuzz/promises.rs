@@ -7,7 +7,7 @@ use isostudy_extract::{
     ChunkExtractor, ChunkSettings, Clustering, Cubes, Execution, Extractor, Faces, Method, Placement, Source,
     Tetrahedra, Topology, VolumeCells, from_fn, weld_chunks,
 };
-use isostudy_mesh::TriangleMesh;
+use isostudy_mesh::{TriangleMesh, self_intersections};
 use isostudy_mesh::quality::quality;
 use isostudy_trilinear::{Samples, Ties, verify};
 
@@ -34,7 +34,7 @@ const CELLS: &str = "crates/isostudy-extract/src/method/volume_cells.rs";
 const LEVELS: &str = "crates/isostudy-extract/src/levels/extractor.rs";
 
 /// All that is promised whatever the samples. A promise that a method does not make may still hold for a volume.
-pub(super) const PROMISES: [Promise; 13] = [
+pub(super) const PROMISES: [Promise; 14] = [
     Promise {
         name: "three vertices to a triangle, all finite",
         source: [FRONT, "have three different vertices"],
@@ -55,6 +55,12 @@ pub(super) const PROMISES: [Promise; 13] = [
         source: [METHOD, "The mesh has no boundary where the surface stays clear of the box."],
         is_made_by: |method| method.promises().closed_off_the_box,
         holds: |made| made.each(|mesh| is_closed_off_the_box(mesh, reach(made.method))),
+    },
+    Promise {
+        name: "no intersections",
+        source: [METHOD, "No triangle has more in common with another one than vertices and sides that both have."],
+        is_made_by: |method| method.promises().no_intersections,
+        holds: |made| made.each(intersects_nowhere),
     },
     Promise {
         name: "in the box",
@@ -193,6 +199,16 @@ fn is_sound(Mesh { mesh, .. }: &Mesh) -> Result<(), String> {
 
 fn is_manifold(Mesh { mesh, .. }: &Mesh) -> Result<(), String> {
     survey(mesh.positions.len(), &mesh.triangles).map(drop)
+}
+
+fn intersects_nowhere(Mesh { mesh, .. }: &Mesh) -> Result<(), String> {
+    if mesh.triangles.is_empty() {
+        return Ok(());
+    }
+    match self_intersections(mesh).map_err(|e| e.to_string())? {
+        0 => Ok(()),
+        pairs => Err(format!("{pairs} pairs of triangles that intersect")),
+    }
 }
 
 /// How far from the box the mesh may end where the surface meets it, in cubes: in the outermost cubes, or where their vertices go.
