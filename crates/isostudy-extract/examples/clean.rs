@@ -11,8 +11,8 @@ use isostudy_extract::{
     presets,
 };
 use isostudy_field::{Terrain, TerrainCharacter};
-use isostudy_mesh::topology::topology;
 use isostudy_mesh::distribution::Distribution;
+use isostudy_mesh::topology::topology;
 use isostudy_mesh::{Bounds, self_intersections};
 
 const METHODS: [&str; 5] = ["dc", "dc-manifold", "dc-in-cell", "dc-clean", "cms"];
@@ -82,7 +82,11 @@ fn twenty() -> Solid {
         let mut point = || Vec3::new(random(), random(), random()) * 1.4 - 0.7;
         let (centre, angle) = (point(), point().x * 3.0);
         let size = 0.12 + 0.16 * random();
-        let one = if i % 3 == 0 { ball(centre, size) } else { boxed(centre, Vec3::new(size, 0.7 * size, 1.3 * size), turned(angle)) };
+        let one = if i % 3 == 0 {
+            ball(centre, size)
+        } else {
+            boxed(centre, Vec3::new(size, 0.7 * size, 1.3 * size), turned(angle))
+        };
         all = if i % 2 == 0 { without(all, one) } else { union(all, one) };
     }
     all
@@ -108,7 +112,11 @@ fn bodies() -> Vec<(&'static str, Box<dyn StudyField>, Bounds)> {
     let cube = Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
     let flat = Bounds { min: Vec3::new(-1.0, -1.0, -0.5), max: Vec3::new(1.0, 1.0, 0.5) };
     let mut all: Vec<(&'static str, Box<dyn StudyField>, Bounds)> = vec![
-        ("turned box", Box::new(Solids(boxed(Vec3::ZERO, Vec3::new(0.6013, 0.5217, 0.7031), turned(0.5)))), cube),
+        (
+            "turned box",
+            Box::new(Solids(boxed(Vec3::ZERO, Vec3::new(0.6013, 0.5217, 0.7031), turned(0.5)))),
+            cube,
+        ),
         ("cone", Box::new(Solids(cone(Vec3::new(0.013, 0.021, 0.71), 0.4, -0.63))), cube),
         ("20 solids", Box::new(Solids(twenty())), cube),
         ("house", Box::new(Solids(house())), flat),
@@ -138,7 +146,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for round in 0..=rounds {
             for (m, method) in methods.iter().enumerate() {
                 let start = Instant::now();
-                method.extract_into(&mut extractors[m], Source::Study(field), &grid, 0.0, &ONE, &mut extraction)?;
+                method.extract_into(
+                    &mut extractors[m],
+                    Source::Study(field),
+                    &grid,
+                    0.0,
+                    &ONE,
+                    &mut extraction,
+                )?;
                 if round > 0 {
                     times[m].push(start.elapsed().as_secs_f64() * 1e3);
                 }
@@ -148,7 +163,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for (m, method) in methods.iter().enumerate() {
             let mesh = method.extract(&mut extractors[m], Source::Study(field), &grid, 0.0, &TWO)?.mesh;
             let found = accuracy_beside(&points, &mesh, field, 0.0, grid.spacing, &TWO)?;
-            let cells = |d: &Distribution| (d.mean / f64::from(grid.spacing), d.max / f64::from(grid.spacing));
+            let cells =
+                |d: &Distribution| (d.mean / f64::from(grid.spacing), d.max / f64::from(grid.spacing));
             let (sharp, most_sharp) = cells(&found.sharp_edges);
             let (mean, _) = cells(&found.distance);
             let topology = topology(&mesh);

@@ -26,8 +26,8 @@ mod tangents;
 mod vertices;
 
 pub(crate) use labels::Placed;
-pub(crate) use plan::{Pattern, VertexPer};
 pub use labels::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
+pub(crate) use plan::{Pattern, VertexPer};
 pub(crate) use quads::{ROUND, is_other_better};
 pub(crate) use relaxed::MOST_SMOOTHING;
 pub(crate) use sharp::Sharp;
@@ -95,9 +95,11 @@ pub(crate) fn extract(
     #[cfg(feature = "dual-contouring")]
     if is_clean {
         let trace = trace.unwrap_or(&mut own);
-        let run = Run { request, progress, trace: Some(&mut *trace), extraction: &mut *extraction };
+        let unmoved = &Request { normals: NormalsOf::Nothing, ..*request };
+        let run = Run { request: unmoved, progress, trace: Some(&mut *trace), extraction: &mut *extraction };
         extract_unmoved(buffers, nets, run)?;
-        return clean::clean(request, trace, extraction);
+        let sharp = sharp.expect("a clean net is of tangent planes");
+        return clean::clean(request, (sharp, tolerance), trace, extraction);
     }
     // The trace says which cell a vertex is of. What is done afterwards needs all triangles.
     let request = &Request { part: None, normals: NormalsOf::Triangles, ..*request };

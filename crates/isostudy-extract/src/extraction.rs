@@ -40,10 +40,16 @@ impl Extraction {
     pub(crate) fn renew(&mut self) -> Result<(), ExtractError> {
         let TriangleMesh { positions, normals, triangles } = &mut self.mesh;
         *normals = vertex_normals(positions, triangles).map_err(|_| ExtractError::NoMemoryForMesh)?;
-        let counts = &mut self.counts;
-        (counts.vertices, counts.triangles) = (positions.len() as u64, triangles.len() as u64);
-        (counts.vertex_bytes, counts.index_bytes) = (24 * counts.vertices, 12 * counts.triangles);
+        self.count();
         Ok(())
+    }
+
+    /// Counts the mesh, where its triangles were made anew.
+    pub(crate) fn count(&mut self) {
+        let counts = &mut self.counts;
+        (counts.vertices, counts.triangles) =
+            (self.mesh.positions.len() as u64, self.mesh.triangles.len() as u64);
+        (counts.vertex_bytes, counts.index_bytes) = (24 * counts.vertices, 12 * counts.triangles);
     }
 }
 

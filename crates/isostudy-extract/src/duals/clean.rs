@@ -24,16 +24,17 @@
 //! **At the box** edges have no quadrilateral, and a loop can be cut into runs of quadrilaterals that have nothing but its vertex in common.
 //! There the fan is filled up: triangles from the vertex to the open edges in between, in the tetrahedra of these edges.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, TryReserveError};
 
 use glam::{DVec3, Vec3};
 use robust::Coord3D;
 
+use super::octree::{self, Standing};
 use super::plan::{Loop, Plans, Table, VertexPer};
-use super::quads::Quadrilateral;
+use super::quads::{Quadrilateral, is_other_better};
+use super::region::margin;
 use super::sharp::Sharp;
 use super::tangents::tangent;
-use super::vertices::MARGIN;
 use crate::clock::Moment;
 use crate::cubes::grid::CubeGrid;
 use crate::execution::threads::for_each_on_threads;
@@ -41,12 +42,15 @@ use crate::extraction::{ExtractError, Extraction};
 use crate::lattice::Part;
 use crate::memory::{collected, copied, filled, push, with_room};
 use crate::sampling::level::Level;
-use crate::source::Request;
+use crate::source::{NormalsOf, Request};
 use crate::surface::trace::{Trace, VertexKey};
 
 /// Numbers of keys: vertices on the edges that begin at a point, by axis, and in the faces that begin there, by the axis across.
 const ON_EDGE: usize = 4;
 const IN_FACE: usize = ON_EDGE + 3;
+/// Shares of a face's edges by which a point is certain to be in it, whatever was rounded: `f32` has 2²⁴ steps, and a share is known to a few
+/// times 2⁻⁵² of them.
+const SURE: f64 = 1e-6;
 /// Of the planes in a face, as for dual contouring.
 const TRUNCATION: f32 = 1e-3;
 
@@ -54,23 +58,48 @@ const TRUNCATION: f32 = 1e-3;
 ///
 /// # Errors
 /// [`ExtractError::NoMemoryForMesh`], [`ExtractError::Threads`], [`ExtractError::Cancelled`], [`ExtractError::TooManyVertices`].
-pub(super) fn clean(request: &Request, trace: &mut Trace, extraction: &mut Extraction) -> Result<(), ExtractError> {
+pub(super) fn clean(
+    request: &Request,
+    (sharp, tolerance): (Sharp, f32),
+    trace: &mut Trace,
+    extraction: &mut Extraction,
+) -> Result<(), ExtractError> {
     let Some(level) = request.level() else { return Ok(()) };
     let start = Moment::now();
     let grid = &CubeGrid::new(request.lattice)?;
-    let origin = request.lattice.origin();
     let mesh = &mut extraction.mesh;
-    let cells = collected(trace.keys.iter().map(|key| {
-        let cell = key.cell();
-        [0, 1, 2].map(|axis| cell[axis].wrapping_sub(origin[axis]) as usize)
-    }))?;
+    let triangles_before = mesh.triangles.len();
+    let Standing { stands_for, mut positions, cells } = match tolerance > 0.0 {
+        true => octree::merged(request, level, grid, (sharp, tolerance), trace, mesh)?,
+        false => as_they_are(request.lattice.origin(), trace, &mesh.positions)?,
+    };
     let mut plans = Plans::new(Table::get(VertexPer::Loop));
     let numbers = collected(trace.patterns.iter().map(|pattern| {
         let (inside, joined, at_box) = pattern.cell();
         (plans.number(inside, joined, at_box), pattern.vertex())
     }))?;
-    let loops = collected(numbers.iter().map(|&(plan, vertex)| &plans.at(plan).loops[vertex]))?;
-    let net = Net { level, grid, positions: &copied(&mesh.positions)?, cells: &cells, loops: &loops };
+    let whole = &Loop::whole();
+    let mut loops = collected(numbers.iter().map(|&(plan, vertex)| &plans.at(plan).loops[vertex]))?;
+    for (v, &(low, size)) in cells.iter().enumerate().filter(|(_, (_, size))| *size > 1) {
+        loops[v] = whole;
+        let [low, high] = [low, low.map(|i| i + size)].map(|corner| grid.position(corner).as_dvec3());
+        let margin = (high - low) * margin(low, high, size);
+        positions[v] = positions[v].as_dvec3().clamp(low + margin, high - margin).as_vec3();
+    }
+    let origin = request.lattice.origin();
+    let leaves = collected(trace.keys.iter().map(|key| {
+        let cell = key.cell();
+        [0, 1, 2].map(|axis| cell[axis].wrapping_sub(origin[axis]) as usize)
+    }))?;
+    let net = Net {
+        level,
+        grid,
+        stands_for: &stands_for,
+        positions: &positions,
+        cells: &cells,
+        leaves: &leaves,
+        loops: &loops,
+    };
 
     request.control.check()?;
     let pairs = mesh.triangles.as_chunks::<2>().0;
@@ -84,8 +113,10 @@ pub(super) fn clean(request: &Request, trace: &mut Trace, extraction: &mut Extra
     let mut added = Added { net: &net, known: HashMap::new(), all: Vec::new() };
     for (q, judged) in judged.iter().enumerate() {
         match judged.cut {
-            Some(by_other) => judged.quad.cut(by_other).into_iter().try_for_each(|of| push(&mut triangles, of))?,
-            None => added.polygon(judged, &mut triangles)?,
+            Cut::Nothing => {}
+            Cut::Triangle(of) => push(&mut triangles, of)?,
+            Cut::Two(of) => of.into_iter().try_for_each(|of| push(&mut triangles, of))?,
+            Cut::Polygon => added.polygon(judged, &mut triangles)?,
         }
         // Mostly two.
         while of_cells.len() < triangles.len() {
@@ -95,12 +126,7 @@ pub(super) fn clean(request: &Request, trace: &mut Trace, extraction: &mut Extra
     let part = request.part.unwrap_or_else(|| Part::whole(request.lattice));
     let is_filled = added.fill(part, &mut triangles, &mut of_cells)?;
     let Added { all, .. } = added;
-    let (mut keys, mut positions) = (std::mem::take(&mut trace.keys), std::mem::take(&mut mesh.positions));
-    for (key, position) in all {
-        push(&mut keys, key)?;
-        push(&mut positions, position)?;
-    }
-    if positions.len() as u64 > u64::from(request.most_vertices) {
+    if (trace.keys.len() + all.len()) as u64 > u64::from(request.most_vertices) {
         return Err(ExtractError::TooManyVertices { limit: request.most_vertices });
     }
     if is_filled {
@@ -110,28 +136,80 @@ pub(super) fn clean(request: &Request, trace: &mut Trace, extraction: &mut Extra
         triangles = collected(order.iter().map(|&t| triangles[t as usize]))?;
         of_cells = collected(order.iter().map(|&t| of_cells[t as usize]))?;
     }
-    // Vertices are in the order of their keys, wherever they were made.
-    let mut order: Vec<u32> = collected(0..keys.len() as u32)?;
-    order.sort_by_key(|&v| keys[v as usize]);
-    let mut ranks = filled(keys.len(), 0u32)?;
-    order.iter().enumerate().for_each(|(rank, &v)| ranks[v as usize] = rank as u32);
-    triangles.iter_mut().for_each(|triangle| *triangle = triangle.map(|v| ranks[v as usize]));
-    mesh.positions = collected(order.iter().map(|&v| positions[v as usize]))?;
-    trace.keys = collected(order.iter().map(|&v| keys[v as usize]))?;
+    mesh.positions = positions;
+    if !all.is_empty() || tolerance > 0.0 {
+        put_in_order(all, &stands_for, &mut trace.keys, &mut mesh.positions, &mut triangles)?;
+    }
     (mesh.triangles, trace.cells) = (triangles, of_cells);
     trace.patterns.clear();
-    extraction.renew()?;
+    match request.normals {
+        NormalsOf::Nothing => extraction.count(),
+        _ => extraction.renew()?,
+    }
+    if tolerance > 0.0 {
+        extraction.counts.discarded_triangles =
+            (triangles_before as u64).saturating_sub(extraction.counts.triangles);
+    }
     extraction.times.geometry += start.elapsed();
     Ok(())
 }
 
-/// A net as it was extracted.
+/// Each vertex in the cell that it was made in.
+fn as_they_are(origin: [i32; 3], trace: &Trace, positions: &[Vec3]) -> Result<Standing, TryReserveError> {
+    let cells = trace.keys.iter().map(|key| {
+        let cell = key.cell();
+        ([0, 1, 2].map(|axis| cell[axis].wrapping_sub(origin[axis]) as usize), 1)
+    });
+    Ok(Standing {
+        stands_for: collected(0..positions.len() as u32)?,
+        positions: copied(positions)?,
+        cells: collected(cells)?,
+    })
+}
+
+/// Adds vertices, whose numbers follow those that there are, so that all are in the order of their keys. Those for which others stand go.
+fn put_in_order(
+    added: Vec<(VertexKey, Vec3)>,
+    stands_for: &[u32],
+    keys: &mut Vec<VertexKey>,
+    positions: &mut Vec<Vec3>,
+    triangles: &mut [[u32; 3]],
+) -> Result<(), TryReserveError> {
+    let old = keys.len();
+    let mut order: Vec<u32> = collected(0..added.len() as u32)?;
+    order.sort_unstable_by_key(|&v| added[v as usize].0);
+    let mut numbers = filled(old + added.len(), 0u32)?;
+    let (mut all_keys, mut all_positions) = (with_room(numbers.len())?, with_room(numbers.len())?);
+    let mut next = order.into_iter().peekable();
+    for v in 0..=old {
+        while let Some(new) = next.next_if(|&new| v == old || added[new as usize].0 < keys[v]) {
+            let (key, position) = added[new as usize];
+            numbers[old + new as usize] = all_keys.len() as u32;
+            all_keys.push(key);
+            all_positions.push(position);
+        }
+        if v < old && stands_for[v] as usize == v {
+            numbers[v] = all_keys.len() as u32;
+            all_keys.push(keys[v]);
+            all_positions.push(positions[v]);
+        }
+    }
+    (*keys, *positions) = (all_keys, all_positions);
+    triangles.iter_mut().for_each(|triangle| *triangle = triangle.map(|v| numbers[v as usize]));
+    Ok(())
+}
+
+/// A net as it was extracted, with cells of it merged.
 struct Net<'a> {
     level: Level<'a>,
     grid: &'a CubeGrid<'a>,
+    /// By vertex, the one that stands for it.
+    stands_for: &'a [u32],
     positions: &'a [Vec3],
-    /// Of each vertex.
-    cells: &'a [[usize; 3]],
+    /// The cell that each vertex is in: its lowest point, and its size in leaves.
+    cells: &'a [([usize; 3], usize)],
+    /// The leaf of each.
+    leaves: &'a [[usize; 3]],
     loops: &'a [&'a Loop],
 }
 
@@ -141,13 +219,24 @@ struct Judged {
     quad: Quadrilateral,
     /// The sides that need a vertex in their face, one bit each. The first goes from the first corner to the second.
     sides: u8,
-    /// Whether the other diagonal cuts it, if no more than a diagonal is needed.
-    cut: Option<bool>,
+    cut: Cut,
+}
+
+/// What becomes of a quadrilateral.
+#[derive(Debug, Clone, Copy)]
+enum Cut {
+    /// Its edge lies within a merged cell, or in one face of two.
+    Nothing,
+    Triangle([u32; 3]),
+    Two([[u32; 3]; 2]),
+    /// It needs vertices.
+    Polygon,
 }
 
 impl Default for Judged {
     fn default() -> Self {
-        Self { quad: Quadrilateral { corners: [0; 4], leads_out: false }, sides: 0, cut: None }
+        let quad = Quadrilateral { corners: [0; 4], leads_out: false };
+        Self { quad, sides: 0, cut: Cut::Nothing }
     }
 }
 
@@ -167,10 +256,11 @@ impl Edge {
     }
 }
 
-/// A face between two cells, or a part of one: its lowest point, the axis across it, and the corner round which it is halved.
+/// A face between two cells, or a part of one: its lowest point, its size, the axis across it, and the corner round which it is halved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Face {
     lowest: [usize; 3],
+    size: usize,
     across: usize,
     half: Option<[bool; 2]>,
 }
@@ -185,15 +275,17 @@ impl Face {
     fn corner(self, [a, b]: [bool; 2]) -> [usize; 3] {
         let mut corner = self.lowest;
         let axes = self.axes();
-        corner[axes[0]] += usize::from(a);
-        corner[axes[1]] += usize::from(b);
+        corner[axes[0]] += self.size * usize::from(a);
+        corner[axes[1]] += self.size * usize::from(b);
         corner
     }
 
     /// The corners of the part, in order.
     fn rim(self) -> ([[usize; 3]; 4], usize) {
         match self.half {
-            None => ([[false, false], [true, false], [true, true], [false, true]].map(|of| self.corner(of)), 4),
+            None => {
+                ([[false, false], [true, false], [true, true], [false, true]].map(|of| self.corner(of)), 4)
+            }
             Some([a, b]) => {
                 let [at, first, second] = [[a, b], [!a, b], [a, !b]].map(|of| self.corner(of));
                 // Counter-clockwise as above.
@@ -202,18 +294,17 @@ impl Face {
         }
     }
 
-    /// The edges of the face that the part has.
+    /// The edges of the rim that the part has, each as long as the face.
     fn edges(self) -> impl Iterator<Item = Edge> {
         let axes = self.axes();
-        (0..2).flat_map(move |along| {
-            [false, true].into_iter().filter(move |&is_high| self.half.is_none_or(|of| of[1 - along] == is_high)).map(
-                move |is_high| {
-                    let mut from = self.lowest;
-                    from[axes[1 - along]] += usize::from(is_high);
-                    Edge { from, axis: axes[along] }
-                },
-            )
-        })
+        let edge = move |(along, is_high): (usize, bool)| {
+            let mut from = self.lowest;
+            from[axes[1 - along]] += self.size * usize::from(is_high);
+            Edge { from, axis: axes[along] }
+        };
+        let is_of_part =
+            move |&(along, is_high): &(usize, bool)| self.half.is_none_or(|of| of[1 - along] == is_high);
+        [(0, false), (0, true), (1, false), (1, true)].into_iter().filter(is_of_part).map(edge)
     }
 }
 
@@ -229,21 +320,45 @@ fn orientation(of: [Vec3; 4]) -> f64 {
 impl Net<'_> {
     fn judge(&self, pair: [[u32; 3]; 2]) -> Judged {
         let quad = Quadrilateral::of(pair);
-        let sides = (0..4).filter(|&side| self.needs_vertex(quad, side)).fold(0, |set, side| set | 1 << side);
-        let prefers_other = pair != quad.cut(false);
-        let is_within = |by_other: &bool| {
-            let ends = self.edge(quad).ends(quad.leads_out).map(|end| self.grid.position(end));
-            let corners = |of: [u32; 3]| of.map(|v| self.positions[v as usize]);
-            quad.cut(*by_other).into_iter().all(|of| divides(corners(of), ends))
+        let standing = quad.corners.map(|v| self.stands_for[v as usize]);
+        let mut polygon = [0; 4];
+        let (mut count, mut sides) = (0, 0);
+        for (side, &v) in standing.iter().enumerate().filter(|&(i, v)| *v != standing[(i + 1) % 4]) {
+            polygon[count] = v;
+            count += 1;
+            sides |= u8::from(self.needs_vertex(quad, side)) << side;
+        }
+        let cut = match count {
+            _ if count < 3 => Cut::Nothing,
+            _ if sides != 0 => Cut::Polygon,
+            3 => {
+                let [a, b, c, _] = polygon;
+                let triangle = if quad.leads_out { [a, b, c] } else { [a, c, b] };
+                if self.divide(quad, &[triangle]) { Cut::Triangle(triangle) } else { Cut::Polygon }
+            }
+            _ => {
+                let merged = Quadrilateral { corners: standing, leads_out: quad.leads_out };
+                let prefers_other = match standing == quad.corners {
+                    true => pair != quad.cut(false),
+                    false => is_other_better(Some(self.level), standing.map(|v| self.positions[v as usize])),
+                };
+                let cuts = [prefers_other, !prefers_other].map(|by_other| merged.cut(by_other));
+                cuts.into_iter().find(|cut| self.divide(quad, cut)).map_or(Cut::Polygon, Cut::Two)
+            }
         };
-        let cut = if sides == 0 { [prefers_other, !prefers_other].into_iter().find(is_within) } else { None };
         Judged { quad, sides, cut }
+    }
+
+    /// Whether each of some triangles has the ends of a quadrilateral's edge strictly on its sides.
+    fn divide(&self, quad: Quadrilateral, triangles: &[[u32; 3]]) -> bool {
+        let ends = self.edge(quad).ends(quad.leads_out).map(|end| self.grid.position(end));
+        triangles.iter().all(|of| divides(of.map(|v| self.positions[v as usize]), ends))
     }
 
     /// The edge that a quadrilateral goes round.
     fn edge(&self, quad: Quadrilateral) -> Edge {
-        let [lowest, _, highest, _] = quad.corners.map(|v| self.cells[v as usize]);
-        // The cells differ along both other axes, by one.
+        let [lowest, _, highest, _] = quad.corners.map(|v| self.leaves[v as usize]);
+        // The leaves differ along both other axes, by one.
         let axis = (0..3).find(|&axis| lowest[axis] == highest[axis]).unwrap_or(0);
         Edge { from: highest, axis }
     }
@@ -255,26 +370,53 @@ impl Net<'_> {
         if self.filled_beyond(quad, face, between).is_some() {
             return true;
         }
-        let [low, high] = between.map(|v| self.positions[v as usize]);
-        let (rim, corners) = face.rim();
-        let passes = |i: usize| {
-            let [p, q] = [rim[i], rim[(i + 1) % corners]].map(|corner| self.grid.position(corner));
-            orientation([low, high, p, q])
-        };
-        let first = passes(0);
-        let is_inside = first != 0.0 && (1..corners).all(|i| passes(i) * first.signum() > 0.0);
-        !is_inside
+        !self.passes(face, between.map(|v| self.positions[v as usize]))
     }
 
-    /// The face that a side passes, as far as it is its loops', and the vertices on its low and its high side.
+    /// Whether the segment between points below and above a face passes through the inside of its part.
+    fn passes(&self, face: Face, between: [Vec3; 2]) -> bool {
+        let [low, high] = between.map(Vec3::as_dvec3);
+        let [least, most] = [[false; 2], [true; 2]].map(|of| self.grid.position(face.corner(of)).as_dvec3());
+        let plane = least[face.across];
+        let ways = [plane - low[face.across], high[face.across] - plane];
+        // Both are of positive length, but where numbers are too coarse for points within cells.
+        if !(ways[0] > 0.0 && ways[1] > 0.0) {
+            return false;
+        }
+        let at = low + (high - low) * (ways[0] / (ways[0] + ways[1]));
+        let [a, b] = face.axes().map(|axis| (at[axis] - least[axis]) / (most[axis] - least[axis]));
+        let room = match face.half {
+            None => a.min(1.0 - a).min(b).min(1.0 - b),
+            Some(half) => {
+                let [a, b] = [if half[0] { 1.0 - a } else { a }, if half[1] { 1.0 - b } else { b }];
+                a.min(b).min(1.0 - a - b)
+            }
+        };
+        if room.abs() > SURE {
+            return room > 0.0;
+        }
+        let (rim, corners) = face.rim();
+        let side = |i: usize| {
+            let [p, q] = [rim[i], rim[(i + 1) % corners]].map(|corner| self.grid.position(corner));
+            orientation([between[0], between[1], p, q])
+        };
+        let first = side(0);
+        first != 0.0 && (1..corners).all(|i| side(i) * first.signum() > 0.0)
+    }
+
+    /// The face that a side passes, as far as it is its loops', and the vertices on its low and its high side. Of cells of two sizes it is
+    /// that of the smaller one.
     fn face(&self, quad: Quadrilateral, side: usize) -> (Face, [u32; 2]) {
         let [a, b] = [quad.corners[side], quad.corners[(side + 1) % 4]];
-        let [of_a, of_b] = [a, b].map(|v| self.cells[v as usize]);
+        let [of_a, of_b] = [a, b].map(|v| self.leaves[v as usize]);
         let across = (0..3).find(|&axis| of_a[axis] != of_b[axis]).unwrap_or(0);
         let [low, high] = if of_a[across] < of_b[across] { [a, b] } else { [b, a] };
         let half = |v: u32, is_high: bool| self.loops[v as usize].region.half(across, is_high);
         let half = half(low, true).or(half(high, false));
-        (Face { lowest: self.cells[high as usize], across, half }, [low, high])
+        let cells = [low, high].map(|v| self.cells[v as usize]);
+        let (mut lowest, size) = if cells[0].1 < cells[1].1 { cells[0] } else { cells[1] };
+        lowest[across] = self.leaves[high as usize][across];
+        (Face { lowest, size, across, half }, [low, high].map(|v| self.stands_for[v as usize]))
     }
 
     /// The face that gets a vertex for a side.
@@ -289,7 +431,12 @@ impl Net<'_> {
 
     /// If a loop on either side is cut, and goes on from the quadrilateral's edge across the face to an edge without one: the corner that it
     /// goes round in the face, if it is one.
-    fn filled_beyond(&self, quad: Quadrilateral, face: Face, [low, high]: [u32; 2]) -> Option<Option<[bool; 2]>> {
+    fn filled_beyond(
+        &self,
+        quad: Quadrilateral,
+        face: Face,
+        [low, high]: [u32; 2],
+    ) -> Option<Option<[bool; 2]>> {
         let table = Table::get(VertexPer::Loop);
         let edge = self.edge(quad);
         [(low, true), (high, false)].into_iter().find_map(|(v, is_high)| {
@@ -297,7 +444,7 @@ impl Net<'_> {
             if of.open == 0 || !of.is_cut() {
                 return None;
             }
-            let cell = self.cells[v as usize];
+            let cell = self.leaves[v as usize];
             let corner = (0..3).fold(0, |set, axis| set | u8::from(edge.from[axis] > cell[axis]) << axis);
             let own = table.number(corner, edge.axis);
             let at = of.edges.iter().position(|&other| other == own)?;
@@ -344,8 +491,9 @@ impl Added<'_> {
         let (net, quad) = (self.net, judged.quad);
         let mut polygon = [0; 8];
         let (mut count, mut in_faces) = (0, 0u8);
-        for side in 0..4 {
-            polygon[count] = quad.corners[side];
+        let standing = quad.corners.map(|v| net.stands_for[v as usize]);
+        for side in (0..4).filter(|&i| standing[i] != standing[(i + 1) % 4]) {
+            polygon[count] = standing[side];
             count += 1;
             if judged.sides >> side & 1 != 0 {
                 polygon[count] = self.in_face(net.face_of_vertex(quad, side))?;
@@ -365,9 +513,8 @@ impl Added<'_> {
             let at = move |i: usize| (apex + i) % count;
             (1..count - 1).map(move |i| [at(0), at(i), at(i + 1)])
         };
-        let is_within = |apex: &usize| {
-            fan(*apex).all(|of| divides(of.map(|i| self.position(polygon[i])), ends))
-        };
+        let is_within =
+            |apex: &usize| fan(*apex).all(|of| divides(of.map(|i| self.position(polygon[i])), ends));
         let apex = (0..count).filter(|&i| in_faces >> i & 1 != 0).find(is_within);
         if let Some(apex) = apex {
             return Ok(fan(apex).try_for_each(|of| push(triangles, of.map(|i| polygon[i])))?);
@@ -390,7 +537,7 @@ impl Added<'_> {
         let table = Table::get(VertexPer::Loop);
         let before = triangles.len();
         for (v, of) in net.loops.iter().enumerate() {
-            let cell = net.cells[v];
+            let cell = net.leaves[v];
             if of.open == 0 || !of.is_cut() || !part.contains(cell) {
                 continue;
             }
@@ -415,7 +562,7 @@ impl Added<'_> {
                     let mut lowest = cell;
                     lowest[across] += usize::from(is_high);
                     let half = corner_between(table, [edge, other], across);
-                    let in_face = self.in_face(Face { lowest, across, half })?;
+                    let in_face = self.in_face(Face { lowest, size: 1, across, half })?;
                     let v = v as u32;
                     push(triangles, if is_next { [v, on_edge, in_face] } else { [v, in_face, on_edge] })?;
                     push(of_cells, part.number(cell))?;
@@ -433,7 +580,12 @@ impl Added<'_> {
         }
     }
 
-    fn add(&mut self, place: [usize; 3], number: usize, position: impl FnOnce() -> Vec3) -> Result<u32, ExtractError> {
+    fn add(
+        &mut self,
+        place: [usize; 3],
+        number: usize,
+        position: impl FnOnce() -> Vec3,
+    ) -> Result<u32, ExtractError> {
         let lattice = self.net.grid.lattice;
         let key = VertexKey::new(lattice.arrangement(), lattice.stored(place), number);
         if let Some(&known) = self.known.get(&key) {
@@ -455,7 +607,8 @@ impl Added<'_> {
             let ends = edge.ends(true).map(|end| net.level.field.sample(net.grid.position(end)));
             let (crossing, _) = tangent(net.level, net.grid, from, axis, ends);
             let share = (crossing[axis] - low[axis]) / (high[axis] - low[axis]);
-            (low + (high - low) * share.clamp(MARGIN, 1.0 - MARGIN)).as_vec3()
+            let margin = margin(low, high, 1);
+            (low + (high - low) * share.clamp(margin, 1.0 - margin)).as_vec3()
         })
     }
 
@@ -474,26 +627,42 @@ impl Net<'_> {
         let [low, high] = [[false; 2], [true; 2]].map(|of| self.grid.position(face.corner(of)).as_dvec3());
         let mut crossings = [(DVec3::ZERO, None); 4];
         let mut count = 0;
-        for edge in face.edges() {
-            let ends = edge.ends(true).map(|end| self.level.field.sample(self.grid.position(end)));
-            if (ends[0] > self.level.isovalue) != (ends[1] > self.level.isovalue) {
-                let (at, normal) = tangent(self.level, self.grid, edge.from, edge.axis, ends);
-                // Within the face.
-                let flat = normal.map(|mut normal| {
-                    normal[face.across] = 0.0;
-                    normal
-                });
-                crossings[count] = (at, flat);
-                count += 1;
+        let value = |at: [usize; 3]| self.level.field.sample(self.grid.position(at));
+        let is_inside = |at: [usize; 3]| value(at) > self.level.isovalue;
+        for Edge { from, axis } in face.edges() {
+            let at = |i: usize| {
+                let mut at = from;
+                at[axis] += i;
+                at
+            };
+            let (mut low, mut high) = (0, face.size);
+            let is_low_inside = is_inside(at(low));
+            if is_low_inside == is_inside(at(high)) {
+                continue;
             }
+            // A side of a merged cell has one crossing.
+            while high - low > 1 {
+                let middle = low.midpoint(high);
+                *(if is_inside(at(middle)) == is_low_inside { &mut low } else { &mut high }) = middle;
+            }
+            let (crossing, normal) =
+                tangent(self.level, self.grid, at(low), axis, [low, high].map(|i| value(at(i))));
+            // Within the face.
+            let flat = normal.map(|mut normal| {
+                normal[face.across] = 0.0;
+                normal
+            });
+            crossings[count] = (crossing, flat);
+            count += 1;
         }
         let crossings = &crossings[..count];
+        let margin = margin(low, high, face.size);
         let share = |at: DVec3| [0, 1].map(|i| (at[axes[i]] - low[axes[i]]) / (high[axes[i]] - low[axes[i]]));
         let middle = face.half.map_or([0.5; 2], |of| of.map(|is_high| if is_high { 0.75 } else { 0.25 }));
         let [mut at, mut anchor] = [middle; 2];
         if !crossings.is_empty() {
             let point = Sharp { truncation: TRUNCATION, in_cell: true }.vertex(crossings, low, high);
-            at = share(point).map(|share| share.clamp(MARGIN, 1.0 - MARGIN));
+            at = share(point).map(|share| share.clamp(margin, 1.0 - margin));
             anchor = [0, 1].map(|i| {
                 let of = crossings.iter().map(|(crossing, _)| share(*crossing)[i].clamp(0.0, 1.0));
                 of.sum::<f64>() / crossings.len() as f64
@@ -502,10 +671,10 @@ impl Net<'_> {
         if let Some(half) = face.half {
             // As far as the diagonal, from the middle of the crossings if that is in the half by enough.
             let way = |of: [f64; 2]| (0..2).map(|i| if half[i] { 1.0 - of[i] } else { of[i] }).sum::<f64>();
-            if way(anchor) > 1.0 - 2.0 * MARGIN {
+            if way(anchor) > 1.0 - 2.0 * margin {
                 anchor = middle;
             }
-            let (here, there) = (1.0 - MARGIN - way(anchor), 1.0 - MARGIN - way(at));
+            let (here, there) = (1.0 - margin - way(anchor), 1.0 - margin - way(at));
             if there < 0.0 {
                 let of = (here / (here - there)).max(0.0);
                 at = [0, 1].map(|i| anchor[i] + (at[i] - anchor[i]) * of);

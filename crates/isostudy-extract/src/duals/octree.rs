@@ -12,15 +12,18 @@ mod net;
 
 use self::hermite::Hermite;
 use self::merging::{Merging, merged_cells};
-use self::net::Net;
+pub(super) use self::net::Standing;
+use self::net::{Net, Simplified};
 use super::quads::Quadrilateral;
 use super::sharp::Sharp;
 use crate::clock::Moment;
 use crate::cubes::grid::CubeGrid;
 use crate::extraction::{ExtractError, Extraction};
 use crate::memory::collected;
+use crate::sampling::level::Level;
 use crate::source::Request;
 use crate::surface::trace::Trace;
+use isostudy_mesh::TriangleMesh;
 
 /// Merges cells of an extraction with tangent planes, whose trace is given. No vertex of a merged cell is farther than `tolerance` spacings from the
 /// tangent plane at a crossing of its cell.
@@ -37,16 +40,51 @@ pub(super) fn simplify(
     let Some(level) = request.level() else { return Ok(()) };
     let start = Moment::now();
     let grid = &CubeGrid::new(request.lattice)?;
-    let hermite = &Hermite::of(request, level, grid, trace)?;
-    let most = f64::from(tolerance) * f64::from(level.spacing);
-    let merged = merged_cells(request, &Merging { grid, hermite, sharp, most })?;
-    let mesh = &mut extraction.mesh;
-    let quadrilaterals = mesh.triangles.as_chunks::<2>().0.iter().map(|&pair| Quadrilateral::of(pair));
-    let net = Net { level, grid, hermite, merged: &merged, quadrilaterals: collected(quadrilaterals)? };
-    let triangles_before = mesh.triangles.len();
-    net.unfolded(request, &mesh.positions)?.write(&net, trace, mesh)?;
+    let triangles_before = extraction.mesh.triangles.len();
+    with_merged(
+        request,
+        level,
+        grid,
+        (sharp, tolerance),
+        trace,
+        &mut extraction.mesh,
+        |net, simplified, trace, mesh| simplified.write(net, trace, mesh),
+    )?;
     extraction.renew()?;
     extraction.counts.discarded_triangles = triangles_before as u64 - extraction.counts.triangles;
     extraction.times.vertex += start.elapsed();
     Ok(())
+}
+
+/// The same cells, as boxes: by vertex of the uniform net the one that stands for it, where that is then, and the cell that it is in.
+///
+/// # Errors
+/// As [`simplify`].
+pub(super) fn merged(
+    request: &Request,
+    level: Level,
+    grid: &CubeGrid,
+    how: (Sharp, f32),
+    trace: &mut Trace,
+    mesh: &mut TriangleMesh,
+) -> Result<Standing, ExtractError> {
+    with_merged(request, level, grid, how, trace, mesh, |net, simplified, _, _| simplified.standing(net))
+}
+
+fn with_merged<T>(
+    request: &Request,
+    level: Level,
+    grid: &CubeGrid,
+    (sharp, tolerance): (Sharp, f32),
+    trace: &mut Trace,
+    mesh: &mut TriangleMesh,
+    make: impl FnOnce(&Net, Simplified, &mut Trace, &mut TriangleMesh) -> Result<T, ExtractError>,
+) -> Result<T, ExtractError> {
+    let hermite = &Hermite::of(request, level, grid, trace)?;
+    let most = f64::from(tolerance) * f64::from(level.spacing);
+    let merged = merged_cells(request, &Merging { grid, hermite, sharp, most })?;
+    let quadrilaterals = mesh.triangles.as_chunks::<2>().0.iter().map(|&pair| Quadrilateral::of(pair));
+    let net = Net { level, grid, hermite, merged: &merged, quadrilaterals: collected(quadrilaterals)? };
+    let simplified = net.unfolded(request, &mesh.positions)?;
+    make(&net, simplified, trace, mesh)
 }

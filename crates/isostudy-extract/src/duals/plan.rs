@@ -52,6 +52,11 @@ pub(super) struct Loop {
 }
 
 impl Loop {
+    /// Of a cell that has one, all of whose edges have quadrilaterals.
+    pub(super) fn whole() -> Self {
+        Self { edges: Vec::new(), open: 0, region: Region::default() }
+    }
+
     /// Whether its quadrilaterals are several runs, which have nothing but the vertex in common.
     pub(super) fn is_cut(&self) -> bool {
         let is_open = |edge: u8| self.open >> edge & 1 != 0;
@@ -207,7 +212,8 @@ impl Table {
                 for &edge in edges {
                     plan.of_edge[usize::from(edge)] = plan.means.len() as u8;
                 }
-                let others = loops.iter().enumerate().filter(|(other, _)| *other != i).map(|(_, other)| &other[..]);
+                let others =
+                    loops.iter().enumerate().filter(|(other, _)| *other != i).map(|(_, other)| &other[..]);
                 let open = edges.iter().filter(|&&edge| is_open(edge)).fold(0, |set, edge| set | 1 << edge);
                 let region = Region::of(edges, others, |edge| self.edge(edge));
                 plan.means.push(self.mean(edges));
@@ -328,7 +334,10 @@ mod tests {
             assert_eq!(table.cube.ambiguous_faces(u32::from(inside)).count_ones(), 1);
             assert_eq!(table.plan(inside, table.joinable(inside), 0).means.len(), 2);
         }
-        assert_eq!((0..=255).filter(|&inside| Table::get(VertexPer::Cell).joinable(inside).is_some()).count(), 0);
+        assert_eq!(
+            (0..=255).filter(|&inside| Table::get(VertexPer::Cell).joinable(inside).is_some()).count(),
+            0
+        );
     }
 
     #[test]

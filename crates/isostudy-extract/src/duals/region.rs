@@ -7,6 +7,21 @@
 
 use glam::DVec3;
 
+/// How far vertices stay within a cell or a face and off its planes, in shares of its edges, but for the steps of `f32`.
+const MARGIN: f64 = 1.0 / 1024.0;
+/// The same is never more, however coarse `f32` is there.
+const MOST_MARGIN: f64 = 0.125;
+/// Steps of `f32` that it is at least.
+const STEPS: f64 = 2.0;
+
+/// How far a vertex between two corners of the lattice, so many cells apart, stays off all sides, in shares of the way. Rounded to `f32` it is
+/// still off them, where cells are 32 or more steps of `f32` long.
+pub(super) fn margin(low: DVec3, high: DVec3, cells: usize) -> f64 {
+    let step = f64::from(f32::EPSILON) * low.abs().max(high.abs()).max_element();
+    let length = (high - low).max_element();
+    (STEPS * step / length).max(MARGIN / cells as f64).min(MOST_MARGIN)
+}
+
 /// The cell on one side of planes through its corners, in shares of its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Region {
@@ -30,7 +45,9 @@ impl Plane {
     fn all() -> impl Iterator<Item = Self> {
         let corners = (0..8).map(|corner| Self { corner, along: None });
         let edges = (0..3).flat_map(|axis| {
-            (0..8).filter(move |corner| corner >> axis & 1 == 0).map(move |corner| Self { corner, along: Some(axis) })
+            (0..8)
+                .filter(move |corner| corner >> axis & 1 == 0)
+                .map(move |corner| Self { corner, along: Some(axis) })
         });
         corners.chain(edges)
     }
@@ -65,9 +82,13 @@ impl Region {
     ) -> Self {
         let mut region = Self::default();
         for other in others {
-            let parts = |plane: Plane, is_near: bool| plane.has(own, is_near, &edge) && plane.has(other, !is_near, &edge);
+            let parts = |plane: Plane, is_near: bool| {
+                plane.has(own, is_near, &edge) && plane.has(other, !is_near, &edge)
+            };
             let (plane, is_near) = Plane::all()
-                .find_map(|plane| [true, false].into_iter().find(|&near| parts(plane, near)).map(|near| (plane, near)))
+                .find_map(|plane| {
+                    [true, false].into_iter().find(|&near| parts(plane, near)).map(|near| (plane, near))
+                })
                 .expect("two loops of a cell have a plane between them");
             match (plane.along, is_near) {
                 (None, true) => region.near |= 1 << plane.corner,
@@ -151,7 +172,9 @@ mod tests {
     #[test]
     fn regions_have_nothing_in_common_and_their_loops_on_the_rim() {
         let is_in = |region: Region, at: DVec3| {
-            region.planes().all(|(plane, is_near)| if is_near { plane.way(at) < 1.0 } else { plane.way(at) > 1.0 })
+            region
+                .planes()
+                .all(|(plane, is_near)| if is_near { plane.way(at) < 1.0 } else { plane.way(at) > 1.0 })
         };
         let mut shared = 0;
         each_plan(|inside, joined, loops, table| {

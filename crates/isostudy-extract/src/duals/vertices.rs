@@ -5,7 +5,7 @@ use std::collections::TryReserveError;
 use glam::{DVec3, Vec3, Vec4};
 
 use super::plan::{EDGE_STARTS, EDGES, Mean, Pattern, Plans};
-use super::region::Region;
+use super::region::{Region, margin};
 use super::sharp::Sharp;
 use super::tangents::{Tangent, Tangents};
 use crate::cubes::grid::CubeGrid;
@@ -20,8 +20,6 @@ use crate::sampling::rows::next;
 use crate::slabs::Vertices;
 use crate::surface::trace::VertexKey;
 
-/// How far a vertex stays within the region of its loop, in edges of the cell.
-pub(super) const MARGIN: f64 = 1.0 / 1024.0;
 /// How far from the ends of their edges crossings count whose mean is certain to be in the region.
 const ANCHOR: f64 = 1.0 / 16.0;
 
@@ -247,7 +245,7 @@ impl VertexPass<'_> {
             DVec3::select(is_between, share.clamp(off, 1.0 - off), share)
         };
         let anchor = all[..count].iter().map(|(at, _)| inner(*at)).sum::<DVec3>() / count as f64;
-        (low + region.nearest(anchor, share(point), MARGIN) * (high - low)).as_vec3()
+        (low + region.nearest(anchor, share(point), margin(low, high, 1)) * (high - low)).as_vec3()
     }
 
     /// The points that some edges of a cell begin at, their axes, and the samples at their ends.

@@ -50,8 +50,8 @@ pub struct DualContouring {
     /// published there is no bound, which gives spikes on rough surfaces.
     pub in_cell: bool,
     /// Whether no triangle passes through another one. Where the quadrilateral of an edge would leave the tetrahedra between that edge and
-    /// its vertices, it gets vertices in the faces of its cubes or on the edge (Ju & Udeshi 2006). Needs `patches` and `in_cell`, and no
-    /// `tolerance`.
+    /// its vertices, it gets vertices in the faces of its cubes or on the edge (Ju & Udeshi 2006). Needs `patches` and
+    /// `in_cell`.
     pub clean: bool,
     /// How far a vertex may be from the tangent plane at any crossing of its cell, in lengths of a lattice edge, where eight cells become
     /// one and theirs again, as far as the topology stays what it is. Triangles then are within a few times that of the surface, and few
@@ -112,8 +112,8 @@ impl Family for DualContouring {
         MethodError::unless((0.0..=1.0).contains(&truncation), "truncation", truncation, share)?;
         let length = "must be 0 or more, in lengths of a lattice edge";
         MethodError::unless(tolerance >= 0.0, "tolerance", tolerance, length)?;
-        let goes_with = !self.clean || self.patches && self.in_cell && tolerance == 0.0;
-        MethodError::unless(goes_with, "clean", self.clean, "needs patches = true and in_cell = true, and no tolerance")
+        let goes_with = !self.clean || self.patches && self.in_cell;
+        MethodError::unless(goes_with, "clean", self.clean, "needs patches = true and in_cell = true")
     }
 
     fn calls_the_field_always(&self) -> bool {

@@ -92,7 +92,12 @@ impl Vertices {
             normals: std::mem::take(&mut piece.normals),
             keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
             #[cfg(feature = "_duals")]
-            patterns: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.patterns)).unwrap_or_default(),
+            patterns: piece
+                .surface
+                .trace
+                .as_mut()
+                .map(|trace| std::mem::take(&mut trace.patterns))
+                .unwrap_or_default(),
             ..Self::default()
         }
     }

@@ -7,7 +7,7 @@ mod promises;
 mod shrink;
 pub(crate) mod volume;
 
-use isostudy_extract::{Macet, Method, Preset, presets};
+use isostudy_extract::{DualContouring, Macet, Method, Preset, presets};
 use proptest::prelude::*;
 use proptest::test_runner::{TestError, TestRunner};
 use rayon::prelude::*;
@@ -98,6 +98,32 @@ fn the_volume_in_a_file() {
         let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
         assert_eq!((read.counts, bits(&read.values)), (volume.counts, bits(&volume.values)), "{seed}");
     }
+}
+
+/// Dual contouring that promises no intersections, with cells that stay and with merged ones.
+fn clean(volumes: u32) {
+    for tolerance in [0.0, 0.02, 0.3, 2.0] {
+        let clean = DualContouring::new().with_patches(true).with_in_cell(true).with_clean(true);
+        let method = Method::DualContouring(clean.with_tolerance(tolerance));
+        let found = smallest(&method, &PROMISES, volumes);
+        let told = found.as_ref().and_then(|volume| broken(&method, volume, &PROMISES));
+        assert!(
+            found.is_none(),
+            "{tolerance}: {:?} {found:?}",
+            told.map(|(promise, of)| (promise, of.fault))
+        );
+    }
+}
+
+#[test]
+fn clean_nets_break_no_promise() {
+    clean(500);
+}
+
+#[test]
+#[ignore = "minutes: run by make test-long"]
+fn ten_thousand_clean_nets_break_no_promise() {
+    clean(10_000);
 }
 
 #[test]

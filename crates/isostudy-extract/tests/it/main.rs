@@ -7,6 +7,7 @@ mod blocky;
 mod border;
 mod bunny;
 mod chunks;
+mod clean;
 mod closing;
 mod continuation;
 mod control;

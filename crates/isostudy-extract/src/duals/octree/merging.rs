@@ -25,10 +25,12 @@ struct Node {
     vertex: Option<DVec3>,
 }
 
-/// A cell that was merged: its leaves, and its vertex.
+/// A cell that was merged: its leaves, its vertex, its lowest point, and how many leaves long it is.
 pub(super) struct Merged {
     pub(super) leaves: Range<usize>,
     pub(super) vertex: DVec3,
+    pub(super) low: [usize; 3],
+    pub(super) size: usize,
 }
 
 /// What decides whether cells become one.
@@ -67,7 +69,8 @@ pub(super) fn merged_cells(request: &Request, merging: &Merging) -> Result<Vec<M
         })?;
         for parent in parents.iter() {
             let Some(vertex) = parent.vertex else { continue };
-            push(&mut merged, Merged { leaves: parent.leaves.clone(), vertex })?;
+            let low = place(parent.code).map(|i| i << level);
+            push(&mut merged, Merged { leaves: parent.leaves.clone(), vertex, low, size: 1 << level })?;
         }
         nodes = parents;
     }

@@ -31,6 +31,18 @@ pub(super) struct Simplified {
     /// By vertex, the one that stands for it: of a merged cell the first.
     stands_for: Vec<u32>,
     positions: Vec<Vec3>,
+    /// By leaf, the number of the cell that it is merged in.
+    cell_of: Vec<Option<usize>>,
+}
+
+/// What stands for the vertices of a uniform net.
+pub(in super::super) struct Standing {
+    /// By vertex, the one that stands for it.
+    pub(in super::super) stands_for: Vec<u32>,
+    /// Where each is.
+    pub(in super::super) positions: Vec<Vec3>,
+    /// The lowest point of the cell that each is in, and how many leaves long that is.
+    pub(in super::super) cells: Vec<([usize; 3], usize)>,
 }
 
 impl Net<'_> {
@@ -87,14 +99,14 @@ impl Net<'_> {
                 leaf += 1;
                 continue;
             };
-            let Merged { leaves, vertex } = &self.merged[cell];
+            let Merged { leaves, vertex, .. } = &self.merged[cell];
             let vertices = || self.hermite.leaves[leaves.clone()].iter().map(|leaf| leaf.vertices.start);
             let first = vertices().min().expect("a cell with leaves");
             vertices().for_each(|v| stands_for[v as usize] = first);
             positions[first as usize] = vertex.as_vec3();
             leaf = leaves.end;
         }
-        Ok(Simplified { stands_for, positions })
+        Ok(Simplified { stands_for, positions, cell_of: copied(cell_of)? })
     }
 
     /// Whether a triangle faces against the surface at the crossing that a quadrilateral with merged corners is round.
@@ -134,6 +146,23 @@ impl Simplified {
         let corners = [a, b, c, d];
         let by_other = is_other_better(Some(level), corners.map(|v| self.positions[v as usize]));
         Quadrilateral { corners, leads_out }.cut(by_other).map(Some)
+    }
+
+    /// The net in boxes.
+    pub(super) fn standing(self, net: &Net) -> Result<Standing, ExtractError> {
+        let Self { stands_for, positions, cell_of } = self;
+        let mut cells = filled(positions.len(), ([0; 3], 1))?;
+        for (leaf, merged) in net.hermite.leaves.iter().zip(&cell_of) {
+            let cell = match merged {
+                None => (leaf.cell, 1),
+                Some(number) => {
+                    let Merged { low, size, .. } = net.merged[*number];
+                    (low, size)
+                }
+            };
+            cells[leaf.vertices.start as usize..leaf.vertices.end as usize].fill(cell);
+        }
+        Ok(Standing { stands_for, positions, cells })
     }
 
     /// Writes what is left of a net.

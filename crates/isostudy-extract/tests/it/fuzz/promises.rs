@@ -7,8 +7,8 @@ use isostudy_extract::{
     ChunkExtractor, ChunkSettings, Clustering, Cubes, Execution, Extractor, Faces, Method, Placement, Source,
     Tetrahedra, Topology, VolumeCells, from_fn, weld_chunks,
 };
-use isostudy_mesh::{TriangleMesh, self_intersections};
 use isostudy_mesh::quality::quality;
+use isostudy_mesh::{TriangleMesh, self_intersections};
 use isostudy_trilinear::{Samples, Ties, verify};
 
 use super::made::{Broken, Made, Mesh, ONE, of_field, on_cells, own_cells, same};
@@ -58,7 +58,10 @@ pub(super) const PROMISES: [Promise; 14] = [
     },
     Promise {
         name: "no intersections",
-        source: [METHOD, "No triangle has more in common with another one than vertices and sides that both have."],
+        source: [
+            METHOD,
+            "No triangle has more in common with another one than vertices and sides that both have.",
+        ],
         is_made_by: |method| method.promises().no_intersections,
         holds: |made| made.each(intersects_nowhere),
     },
