@@ -25,6 +25,8 @@ mod sharp;
 mod tangents;
 mod vertices;
 
+#[cfg(feature = "dual-contouring")]
+pub(crate) use clean::Room as CleanRoom;
 pub(crate) use labels::Placed;
 pub use labels::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
 pub(crate) use plan::{Pattern, VertexPer};
@@ -80,6 +82,7 @@ pub(crate) enum Blocks {
 /// The stages in order, timed and counted. The lattice is simple cubic.
 pub(crate) fn extract(
     buffers: (&mut Kept, &mut Vec<Workspace>),
+    #[cfg(feature = "dual-contouring")] room: &mut CleanRoom,
     nets: Nets,
     run: Run,
 ) -> Result<(), ExtractError> {
@@ -97,9 +100,13 @@ pub(crate) fn extract(
         let trace = trace.unwrap_or(&mut own);
         let unmoved = &Request { normals: NormalsOf::Nothing, ..*request };
         let run = Run { request: unmoved, progress, trace: Some(&mut *trace), extraction: &mut *extraction };
-        extract_unmoved(buffers, nets, run)?;
+        let (kept, workspaces) = buffers;
+        extract_unmoved((&mut *kept, workspaces), nets, run)?;
         let sharp = sharp.expect("a clean net is of tangent planes");
-        return clean::clean(request, (sharp, tolerance), trace, extraction);
+        let grid = kept.grid(request, 1)?;
+        let result = clean::clean(request, &grid, (sharp, tolerance), room, trace, extraction);
+        kept.keep(grid);
+        return result;
     }
     // The trace says which cell a vertex is of. What is done afterwards needs all triangles.
     let request = &Request { part: None, normals: NormalsOf::Triangles, ..*request };

@@ -186,7 +186,7 @@ fn so_does_that_of_every_preset() {
         }
         tried += 1;
     }
-    assert_eq!(tried, 21, "all that collapse no edge, do not turn edges and have one resolution");
+    assert_eq!(tried, 22, "all that collapse no edge, do not turn edges and have one resolution");
 }
 
 fn a_moving_window_allocates_nothing_from_the_second_chunk_on() {

@@ -68,6 +68,8 @@ pub(crate) struct CubeStreamer {
     snapped: Vec<snap::Workspace>,
     #[cfg(feature = "_duals")]
     nets: Vec<duals::Workspace>,
+    #[cfg(feature = "dual-contouring")]
+    clean: duals::CleanRoom,
 }
 
 impl CubeStreamer {
@@ -97,7 +99,13 @@ impl CubeStreamer {
             #[cfg(feature = "snap-cubes")]
             Way::Snapped { gamma, flat } => snap::extract((kept, &mut self.snapped), gamma, flat, run),
             #[cfg(feature = "_duals")]
-            Way::Nets(of) => duals::extract((kept, &mut self.nets), of, run),
+            Way::Nets(of) => duals::extract(
+                (kept, &mut self.nets),
+                #[cfg(feature = "dual-contouring")]
+                &mut self.clean,
+                of,
+                run,
+            ),
             #[cfg(feature = "continuation")]
             Way::Continued(continued) => {
                 let rule = Rule { faces: Faces::SeparateInside, diagonals: Diagonals::Fan };
