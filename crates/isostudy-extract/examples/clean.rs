@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use glam::{Mat3, Vec3};
 use isostudy_extract::{
-    BoxGrid, Execution, Extraction, Extractor, IsosurfacePoints, Method, Source, StudyField, accuracy_beside,
-    presets,
+    BoxGrid, Chunk, ChunkExtractor, ChunkSettings, Control, Execution, Extraction, Extractor,
+    IsosurfacePoints, Method, Source, StudyField, accuracy_beside, presets,
 };
 use isostudy_field::{Terrain, TerrainCharacter};
 use isostudy_mesh::distribution::Distribution;
@@ -130,6 +130,50 @@ fn bodies() -> Vec<(&'static str, Box<dyn StudyField>, Bounds)> {
     all
 }
 
+/// Medians over chunks of 32³ cells that have a surface, and over rounds, of what each takes.
+fn in_chunks(
+    name: &str,
+    field: &dyn StudyField,
+    grid: &BoxGrid,
+    rounds: usize,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let ids = ["dc-in-cell", "dc-clean"];
+    let mut extractors = Vec::new();
+    for id in ids {
+        let method = presets().iter().find(|preset| preset.id == id).expect("a method of that name").method;
+        extractors.push(ChunkExtractor::in_box(grid, &method, &ChunkSettings::default())?);
+    }
+    let mut chunk = Chunk::default();
+    let (mut times, mut ratios) = ([Vec::new(), Vec::new()], Vec::new());
+    for cells in extractors[0].grid(32).collect::<Vec<_>>() {
+        let mut best = [f64::INFINITY; 2];
+        for _ in 0..rounds.max(1) {
+            for (extractor, best) in extractors.iter_mut().zip(&mut best) {
+                let start = Instant::now();
+                extractor.extract_into(Source::Study(field), cells, Control::default(), &mut chunk)?;
+                *best = best.min(start.elapsed().as_secs_f64() * 1e3);
+            }
+        }
+        if !chunk.triangles.is_empty() {
+            ratios.push(best[1] / best[0]);
+            times.iter_mut().zip(best).for_each(|(all, best)| all.push(best));
+        }
+    }
+    let median = |of: &mut Vec<f64>| {
+        of.sort_by(f64::total_cmp);
+        of[of.len() / 2]
+    };
+    let [one, other] = &mut times;
+    println!(
+        "{name}, chunks of 32³: dc-in-cell {:.2} ms, dc-clean {:.2} ms, ratio {:.2}, at most {:.2}",
+        median(one),
+        median(other),
+        median(&mut ratios),
+        ratios.iter().copied().fold(0.0, f64::max)
+    );
+    Ok(())
+}
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let rounds: usize = std::env::args().nth(1).map_or(Ok(5), |text| text.parse())?;
     for (name, field, bounds) in bodies() {
@@ -159,6 +203,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 }
             }
         }
+        in_chunks(name, field, &grid, rounds)?;
         println!("{name}, {} cells", methods[0].cells(&grid)?.iter().map(|n| u64::from(*n)).product::<u64>());
         for (m, method) in methods.iter().enumerate() {
             let mesh = method.extract(&mut extractors[m], Source::Study(field), &grid, 0.0, &TWO)?.mesh;

@@ -73,7 +73,7 @@
 //!   is used; guarded, it belongs to the inside end.
 //! - Means of crossings can lie in a line, so that a triangle between clusters has no area: of 40,000 volumes of noise with
 //!   few levels one had one such triangle; scans of whole numbers had none.
-//! - Nothing is said about triangles that intersect, and a feature thinner than the spacing can be missed.
+//! - Triangles may intersect, but where [`Promises::no_intersections`] says that none do. A feature thinner than the spacing can be missed.
 //!
 //! # Where to start
 //!

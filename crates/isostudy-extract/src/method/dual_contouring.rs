@@ -32,7 +32,7 @@ const fn named(
 ///
 /// Crossings are roots of the field on their edges. Normals are the field's own gradients where it has some, else central differences.
 /// The vertex has the least sum of squared distances to the planes; where they leave a choice it is the point nearest to the mean of
-/// the crossings. Triangles may pass through each other.
+/// the crossings. Triangles may pass through each other, unless the net is to be [`clean`](DualContouring::clean).
 ///
 /// With the feature `serde` the keys are those of the fields, all with defaults.
 #[non_exhaustive]
