@@ -3,7 +3,8 @@
 //!
 //! `cargo run --release -p isostudy-extract --example dig -- [cells along an axis] [cells of a chunk] [edits] [arrangement]`
 //!
-//! `--method ID` takes any of the methods that `isostudy methods` lists and that makes chunks, in place of an arrangement.
+//! `--method ID` takes any of the methods that `isostudy methods` lists and that makes chunks, in place of an arrangement. `--boxes` digs
+//! boxes in place of balls: with `--method dc-clean` their walls stay sharp.
 
 use std::time::Instant;
 
@@ -16,27 +17,34 @@ use isostudy_field::{Asteroid, FieldCache, StudyField};
 use isostudy_mesh::Bounds;
 use isostudy_mesh::topology::topology;
 
-/// A solid less the balls that were dug out of it.
+/// A solid less the balls or boxes that were dug out of it.
 struct Dug<'a> {
     solid: &'a dyn StudyField,
-    holes: Vec<Ball>,
+    holes: Vec<Hole>,
     /// No value is above this one.
     deepest: f32,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Ball {
+struct Hole {
     centre: Vec3,
+    /// Half the sides of a box.
     radius: f32,
+    is_box: bool,
 }
 
-impl Ball {
-    /// Positive outside: what is left when the ball is taken away.
+impl Hole {
+    /// Positive outside: what is left when the hole is taken away.
     fn value(&self, p: Vec3) -> f32 {
-        p.distance(self.centre) - self.radius
+        self.way(p - self.centre) - self.radius
     }
 
-    /// Beyond this box, digging the ball out of a field below `deepest` changes nothing, rounding included.
+    /// How far a step leads away from the centre.
+    fn way(&self, step: Vec3) -> f32 {
+        if self.is_box { step.abs().max_element() } else { step.length() }
+    }
+
+    /// Beyond this box, digging the hole out of a field below `deepest` changes nothing, rounding included.
     fn reach(&self, deepest: f32) -> Bounds {
         let reach = Vec3::splat((self.radius + deepest) * 1.001);
         Bounds { min: self.centre - reach, max: self.centre + reach }
@@ -84,13 +92,15 @@ impl StudyField for Dug<'_> {
             let near = hole.centre.clamp(bounds.min, bounds.max);
             let far = (hole.centre - bounds.min).abs().max((hole.centre - bounds.max).abs());
             let rounding = 1e-5;
-            (low.min(hole.value(near) - rounding), high.min(far.length() - hole.radius + rounding))
+            (low.min(hole.value(near) - rounding), high.min(hole.way(far) - hole.radius + rounding))
         }))
     }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let (method, mut arguments) = method_and_numbers(std::env::args().skip(1))?;
+    let is_box = std::env::args().any(|argument| argument == "--boxes");
+    let (method, mut arguments) =
+        method_and_numbers(std::env::args().skip(1).filter(|argument| argument != "--boxes"))?;
     let mut number = |default: u32| arguments.next().map_or(Ok(default), |text| text.parse());
     let (cells, chunk_cells, edits) = (number(128)?, number(16)?, number(100)?);
     let method = match (method, arguments.next()) {
@@ -132,14 +142,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let (mut of_edit, mut of_chunk, mut touched) = (Vec::new(), Vec::new(), 0);
     for edit in 0..edits {
-        let hole = Ball { centre: on_surface(solid, edit), radius: 0.06 };
+        let hole = Hole { centre: on_surface(solid, edit), radius: 0.06, is_box };
         field.holes.push(hole);
         let changed = hole.reach(field.deepest);
         let start = Instant::now();
         for chunk in chunks.iter_mut().filter(|chunk| chunk.is_touched_by(changed)) {
             let start = Instant::now();
             // Of all holes only those near by, so that old edits cost nothing.
-            let near = |hole: &&Ball| chunk.is_touched_by(hole.reach(field.deepest));
+            let near = |hole: &&Hole| chunk.is_touched_by(hole.reach(field.deepest));
             let holes = field.holes.iter().filter(near).copied().collect();
             let local = Dug { holes, ..field };
             let cells = chunk.cells;

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use glam::Vec3;
 
-#[cfg(feature = "_duals")]
 use crate::duals::Pattern;
 use crate::extraction::ExtractError;
 use crate::lattice::{Lattice, Part};
@@ -75,7 +74,6 @@ pub(crate) struct Vertices {
     /// Where they are asked for.
     pub(crate) keys: Option<Vec<VertexKey>>,
     /// As [`Trace::patterns`](crate::surface::trace::Trace::patterns).
-    #[cfg(feature = "_duals")]
     pub(crate) patterns: Vec<Pattern>,
     /// Whether some are not of the part that is asked for.
     pub(crate) has_spare: bool,
@@ -91,7 +89,6 @@ impl Vertices {
             targets: std::mem::take(&mut piece.targets),
             normals: std::mem::take(&mut piece.normals),
             keys: piece.surface.trace.as_mut().map(|trace| std::mem::take(&mut trace.keys)),
-            #[cfg(feature = "_duals")]
             patterns: piece
                 .surface
                 .trace
@@ -143,10 +140,7 @@ impl Vertices {
         piece.crossing_ends = self.crossing_ends;
         if let (Some(trace), Some(keys)) = (&mut piece.surface.trace, self.keys) {
             (trace.keys, trace.has_spare) = (keys, self.has_spare);
-            #[cfg(feature = "_duals")]
-            {
-                trace.patterns = self.patterns;
-            }
+            trace.patterns = self.patterns;
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use std::collections::TryReserveError;
 
-#[cfg(feature = "_duals")]
 use crate::duals::Pattern;
 use crate::lattice::{Arrangement, Part, cell_of_stored};
 
@@ -131,7 +130,6 @@ impl VertexKey {
 pub(crate) struct Trace {
     pub(crate) keys: Vec<VertexKey>,
     /// Of vertices that stand for loops of surface, which; none of others.
-    #[cfg(feature = "_duals")]
     pub(crate) patterns: Vec<Pattern>,
     /// Numbers of cells in the part that was extracted, or of all.
     pub(crate) cells: Vec<u32>,
@@ -158,11 +156,8 @@ impl Trace {
         self.cells.try_reserve(other.cells.len())?;
         self.keys.append(&mut other.keys);
         self.cells.append(&mut other.cells);
-        #[cfg(feature = "_duals")]
-        {
-            self.patterns.try_reserve(other.patterns.len())?;
-            self.patterns.append(&mut other.patterns);
-        }
+        self.patterns.try_reserve(other.patterns.len())?;
+        self.patterns.append(&mut other.patterns);
         self.has_spare |= other.has_spare;
         Ok(())
     }
@@ -171,7 +166,6 @@ impl Trace {
     pub(crate) fn start(&mut self, part: Option<Part>) {
         self.keys.clear();
         self.cells.clear();
-        #[cfg(feature = "_duals")]
         self.patterns.clear();
         (self.part, self.has_spare) = (part, false);
     }
