@@ -12,7 +12,7 @@
 //! It streams: sides; a layer behind, samples; another behind, the vertices of a layer of cells; then the quadrilaterals of the edges
 //! that begin at the points below it.
 
-#[cfg(feature = "dual-contouring")]
+#[cfg(feature = "dual-contouring-clean")]
 mod clean;
 mod labels;
 mod octree;
@@ -25,7 +25,7 @@ mod sharp;
 mod tangents;
 mod vertices;
 
-#[cfg(feature = "dual-contouring")]
+#[cfg(feature = "dual-contouring-clean")]
 pub(crate) use clean::Room as CleanRoom;
 pub(crate) use labels::Placed;
 pub use labels::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
@@ -82,7 +82,7 @@ pub(crate) enum Blocks {
 /// The stages in order, timed and counted. The lattice is simple cubic.
 pub(crate) fn extract(
     buffers: (&mut Kept, &mut Vec<Workspace>),
-    #[cfg(feature = "dual-contouring")] room: &mut CleanRoom,
+    #[cfg(feature = "dual-contouring-clean")] room: &mut CleanRoom,
     nets: Nets,
     run: Run,
 ) -> Result<(), ExtractError> {
@@ -95,7 +95,7 @@ pub(crate) fn extract(
     }
     let mut own = Trace::default();
     let Run { request, progress, trace, extraction } = run;
-    #[cfg(feature = "dual-contouring")]
+    #[cfg(feature = "dual-contouring-clean")]
     if is_clean {
         let trace = trace.unwrap_or(&mut own);
         let unmoved = &Request { normals: NormalsOf::Nothing, ..*request };

@@ -186,7 +186,7 @@
 
 // Passes that families share are in every build, whichever families it has: what none of them takes is left out by the linker.
 #![cfg_attr(
-    not(feature = "all-families"),
+    not(all(feature = "all-families", feature = "dual-contouring-clean")),
     allow(dead_code, unreachable_patterns, unused_imports, unused_variables)
 )]
 

@@ -60,7 +60,7 @@ pub(crate) struct Room {
     of_cells: Vec<u32>,
     known: HashMap<VertexKey, u32>,
     added: Vec<(VertexKey, Vec3)>,
-    order: Vec<u32>,
+    order: Vec<(u128, u32)>,
     ranks: Vec<u32>,
     keys: Vec<VertexKey>,
     positions: Vec<Vec3>,
@@ -154,10 +154,11 @@ pub(super) fn clean(
     let part = request.part.unwrap_or_else(|| Part::whole(request.lattice));
     if added.fill(part, made, of_cells)? {
         // What fills a cell comes after its quadrilaterals.
-        let mut order: Vec<u32> = collected(0..made.len() as u32)?;
-        order.sort_by_key(|&t| of_cells[t as usize]);
-        *made = collected(order.iter().map(|&t| made[t as usize]))?;
-        *of_cells = collected(order.iter().map(|&t| of_cells[t as usize]))?;
+        let order = &mut room.order;
+        refilled(order, of_cells.iter().enumerate().map(|(t, &cell)| (u128::from(cell), t as u32)))?;
+        order.sort_unstable();
+        *made = collected(order.iter().map(|&(_, t)| made[t as usize]))?;
+        *of_cells = collected(order.iter().map(|&(cell, _)| cell as u32))?;
     }
     if (positions.len() + room.added.len()) as u64 > u64::from(request.most_vertices) {
         return Err(ExtractError::TooManyVertices { limit: request.most_vertices });
@@ -194,14 +195,14 @@ impl Room {
     ) -> Result<(), TryReserveError> {
         let Self { added, order, ranks, keys: all_keys, positions: all_positions, .. } = self;
         let old = keys.len();
-        refilled(order, 0..added.len() as u32)?;
-        order.sort_unstable_by_key(|&v| added[v as usize].0);
+        refilled(order, added.iter().enumerate().map(|(v, (key, _))| (key.number(), v as u32)))?;
+        order.sort_unstable();
         reset(ranks, old + added.len(), 0)?;
         all_keys.clear();
         all_keys.try_reserve(ranks.len())?;
         all_positions.clear();
         all_positions.try_reserve(ranks.len())?;
-        let mut next = order.iter().copied().peekable();
+        let mut next = order.iter().map(|&(_, v)| v).peekable();
         for v in 0..=old {
             while let Some(new) = next.next_if(|&new| v == old || added[new as usize].0 < keys[v]) {
                 let (key, position) = added[new as usize];

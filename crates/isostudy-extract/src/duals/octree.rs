@@ -11,7 +11,7 @@ mod merging;
 mod net;
 
 use self::hermite::Hermite;
-use self::merging::{Merging, merged_cells};
+use self::merging::{Merged, Merging, merged_cells};
 pub(super) use self::net::Standing;
 use self::net::{Net, Simplified};
 use super::quads::Quadrilateral;
@@ -40,16 +40,10 @@ pub(super) fn simplify(
     let Some(level) = request.level() else { return Ok(()) };
     let start = Moment::now();
     let grid = &CubeGrid::new(request.lattice)?;
-    let triangles_before = extraction.mesh.triangles.len();
-    with_merged(
-        request,
-        level,
-        grid,
-        (sharp, tolerance),
-        trace,
-        &mut extraction.mesh,
-        |net, simplified, trace, mesh| simplified.write(net, trace, mesh),
-    )?;
+    let mesh = &mut extraction.mesh;
+    let triangles_before = mesh.triangles.len();
+    let (parts, simplified) = parts(request, level, grid, (sharp, tolerance), trace, mesh)?;
+    simplified.write(&parts.net(level, grid), trace, mesh)?;
     extraction.renew()?;
     extraction.counts.discarded_triangles = triangles_before as u64 - extraction.counts.triangles;
     extraction.times.vertex += start.elapsed();
@@ -65,26 +59,40 @@ pub(super) fn merged(
     level: Level,
     grid: &CubeGrid,
     how: (Sharp, f32),
-    trace: &mut Trace,
-    mesh: &mut TriangleMesh,
+    trace: &Trace,
+    mesh: &TriangleMesh,
 ) -> Result<Standing, ExtractError> {
-    with_merged(request, level, grid, how, trace, mesh, |net, simplified, _, _| simplified.standing(net))
+    let (parts, simplified) = parts(request, level, grid, how, trace, mesh)?;
+    simplified.standing(&parts.net(level, grid))
 }
 
-fn with_merged<T>(
+/// What a net is made of.
+struct Parts {
+    hermite: Hermite,
+    merged: Vec<Merged>,
+    quadrilaterals: Vec<Quadrilateral>,
+}
+
+impl Parts {
+    fn net<'a>(&'a self, level: Level<'a>, grid: &'a CubeGrid<'a>) -> Net<'a> {
+        let Self { hermite, merged, quadrilaterals } = self;
+        Net { level, grid, hermite, merged, quadrilaterals }
+    }
+}
+
+fn parts(
     request: &Request,
     level: Level,
     grid: &CubeGrid,
     (sharp, tolerance): (Sharp, f32),
-    trace: &mut Trace,
-    mesh: &mut TriangleMesh,
-    make: impl FnOnce(&Net, Simplified, &mut Trace, &mut TriangleMesh) -> Result<T, ExtractError>,
-) -> Result<T, ExtractError> {
-    let hermite = &Hermite::of(request, level, grid, trace)?;
+    trace: &Trace,
+    mesh: &TriangleMesh,
+) -> Result<(Parts, Simplified), ExtractError> {
+    let hermite = Hermite::of(request, level, grid, trace)?;
     let most = f64::from(tolerance) * f64::from(level.spacing);
-    let merged = merged_cells(request, &Merging { grid, hermite, sharp, most })?;
+    let merged = merged_cells(request, &Merging { grid, hermite: &hermite, sharp, most })?;
     let quadrilaterals = mesh.triangles.as_chunks::<2>().0.iter().map(|&pair| Quadrilateral::of(pair));
-    let net = Net { level, grid, hermite, merged: &merged, quadrilaterals: collected(quadrilaterals)? };
-    let simplified = net.unfolded(request, &mesh.positions)?;
-    make(&net, simplified, trace, mesh)
+    let parts = Parts { hermite, merged, quadrilaterals: collected(quadrilaterals)? };
+    let simplified = parts.net(level, grid).unfolded(request, &mesh.positions)?;
+    Ok((parts, simplified))
 }

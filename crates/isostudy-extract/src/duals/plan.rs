@@ -156,10 +156,10 @@ impl Table {
         self.vertex_per != VertexPer::Cell
     }
 
-    /// Whether it says what loops its cells have.
+    /// Whether it says what loops its cells have. A build without the feature has no code for that.
     #[inline]
     pub(super) fn has_loops(&self) -> bool {
-        self.vertex_per == VertexPer::Loop
+        cfg!(feature = "dual-contouring-clean") && self.vertex_per == VertexPer::Loop
     }
 
     /// The corner that an edge begins at, and its axis.
@@ -204,7 +204,7 @@ impl Table {
         };
         let loops = self.cube.loops(u32::from(inside), joined);
         let mut plan = Plan::default();
-        if self.vertex_per == VertexPer::Loop {
+        if self.has_loops() {
             for (i, edges) in loops.iter().enumerate() {
                 if edges.iter().all(|&edge| is_open(edge)) {
                     continue;

@@ -68,7 +68,7 @@ pub(crate) struct CubeStreamer {
     snapped: Vec<snap::Workspace>,
     #[cfg(feature = "_duals")]
     nets: Vec<duals::Workspace>,
-    #[cfg(feature = "dual-contouring")]
+    #[cfg(feature = "dual-contouring-clean")]
     clean: duals::CleanRoom,
 }
 
@@ -101,7 +101,7 @@ impl CubeStreamer {
             #[cfg(feature = "_duals")]
             Way::Nets(of) => duals::extract(
                 (kept, &mut self.nets),
-                #[cfg(feature = "dual-contouring")]
+                #[cfg(feature = "dual-contouring-clean")]
                 &mut self.clean,
                 of,
                 run,

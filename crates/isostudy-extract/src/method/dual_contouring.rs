@@ -14,6 +14,7 @@ pub(super) const PRESETS: &[Preset] = &[
     named("dc", "dual contouring", [false, false, false], PLANES),
     named("dc-manifold", "dual contouring (manifold)", [true, false, false], PLANES_OF_PATCHES),
     named("dc-in-cell", "dual contouring in cells", [true, true, false], PLANES_OF_PATCHES),
+    #[cfg(feature = "dual-contouring-clean")]
     named("dc-clean", "dual contouring (clean)", [true, true, true], ENVELOPES),
 ];
 
@@ -51,7 +52,7 @@ pub struct DualContouring {
     pub in_cell: bool,
     /// Whether no triangle passes through another one. Where the quadrilateral of an edge would leave the tetrahedra between that edge and
     /// its vertices, it gets vertices in the faces of its cubes or on the edge (Ju & Udeshi 2006). Needs `patches` and
-    /// `in_cell`.
+    /// `in_cell`, and the feature `dual-contouring-clean`, which is on by default.
     pub clean: bool,
     /// How far a vertex may be from the tangent plane at any crossing of its cell, in lengths of a lattice edge, where eight cells become
     /// one and theirs again, as far as the topology stays what it is. Triangles then are within a few times that of the surface, and few
@@ -112,6 +113,8 @@ impl Family for DualContouring {
         MethodError::unless((0.0..=1.0).contains(&truncation), "truncation", truncation, share)?;
         let length = "must be 0 or more, in lengths of a lattice edge";
         MethodError::unless(tolerance >= 0.0, "tolerance", tolerance, length)?;
+        let is_built = !self.clean || cfg!(feature = "dual-contouring-clean");
+        MethodError::unless(is_built, "clean", self.clean, "needs the feature dual-contouring-clean")?;
         let goes_with = !self.clean || self.patches && self.in_cell;
         MethodError::unless(goes_with, "clean", self.clean, "needs patches = true and in_cell = true")
     }

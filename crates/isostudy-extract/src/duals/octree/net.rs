@@ -23,7 +23,7 @@ pub(super) struct Net<'a> {
     pub(super) hermite: &'a Hermite,
     /// Each before those in it.
     pub(super) merged: &'a [Merged],
-    pub(super) quadrilaterals: Vec<Quadrilateral>,
+    pub(super) quadrilaterals: &'a [Quadrilateral],
 }
 
 /// The net with some of its cells merged, in the numbers of its vertices.
@@ -70,7 +70,7 @@ impl Net<'_> {
             }
             let simplified = self.simplified(positions, &cell_of)?;
             let mut folded = Vec::new();
-            for of in &self.quadrilaterals {
+            for of in self.quadrilaterals {
                 let cells = of.corners.map(|v| cell_of[leaf_of(v)]);
                 let is_new = of.corners.iter().any(|&v| is_new[leaf_of(v)]);
                 if is_new && cells.iter().any(Option::is_some) && self.is_folded(*of, &simplified, leaf_of) {
