@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use std::f32::consts::FRAC_PI_2;
 
 use bevy::asset::RenderAssetUsages;
+use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::input::mouse::AccumulatedMouseMotion;
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
@@ -61,6 +62,8 @@ fn set_up(world: &mut World) {
     let eye = turned() * Vec3::new(0.0, 0.0, Ground::default().height(0.0, 0.0) + 12.0);
     world.spawn((
         Camera3d::default(),
+        // The default reads a table that a feature of Bevy has: without it all is magenta.
+        Tonemapping::AcesFitted,
         Transform::from_translation(eye).looking_to(Vec3::new(1.0, -0.3, 0.4), Vec3::Y),
     ));
     world.spawn((
