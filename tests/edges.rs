@@ -73,7 +73,7 @@ impl TurnedBox {
         (0..8).map(|c| to(self.corner(c))).fold(0.0, f64::max)
     }
 
-    /// The mean distance from points of the twelve edges, evenly by length, to a mesh; in cells. Every triangle is tried.
+    /// The mean distance from points of the twelve edges, evenly by length, to a mesh; in cells. Every triangle is tried that could be nearer.
     fn edges_to(&self, mesh: &TriangleMesh) -> f64 {
         let (mut sum, mut count) = (0.0, 0);
         // Each triangle with a ball round it: what lies farther than the best so far is not looked at.

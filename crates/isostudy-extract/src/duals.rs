@@ -26,7 +26,7 @@ mod tangents;
 mod vertices;
 
 #[cfg(feature = "dual-contouring-clean")]
-pub(crate) use clean::Room as CleanRoom;
+pub(crate) use clean::Buffers as CleanBuffers;
 pub(crate) use labels::Placed;
 pub use labels::{LabelCount, LabelError, LabelSettings, LabelSurface, LabelVolume};
 pub(crate) use plan::{Pattern, VertexPer};
@@ -82,7 +82,7 @@ pub(crate) enum Blocks {
 /// The stages in order, timed and counted. The lattice is simple cubic.
 pub(crate) fn extract(
     buffers: (&mut Kept, &mut Vec<Workspace>),
-    #[cfg(feature = "dual-contouring-clean")] room: &mut CleanRoom,
+    #[cfg(feature = "dual-contouring-clean")] room: &mut CleanBuffers,
     nets: Nets,
     run: Run,
 ) -> Result<(), ExtractError> {

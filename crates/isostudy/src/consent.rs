@@ -3,8 +3,9 @@
 //! What is remembered belongs to the user, not to a folder of results, which could come from the stranger that the study is from. It is
 //! bound to absolute paths: the same script beside other modules is another program.
 
+use crate::digests::Digests;
 use crate::recipe::{self, Recipe};
-use crate::store::{Digests, write_whole};
+use crate::store::write_whole;
 use anyhow::{Context, Result, bail};
 use isostudy_design::Study;
 use isostudy_design::record::Purpose;

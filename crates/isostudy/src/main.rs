@@ -11,6 +11,7 @@ mod answer_files;
 mod chunk_times;
 mod commands;
 mod consent;
+mod digests;
 mod error_colours;
 mod families;
 mod fields;

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
@@ -379,25 +379,6 @@ pub(crate) fn sha256_of_file(path: &Path) -> Result<String> {
             0 => return Ok(hexadecimal(&digest.finalize())),
             read => digest.update(&part[..read]),
         }
-    }
-}
-
-/// Digests of files that several programs are: each file is read once.
-#[derive(Default)]
-pub(crate) struct Digests(BTreeMap<PathBuf, String>);
-
-impl Digests {
-    /// As [`sha256_of_file`].
-    ///
-    /// # Errors
-    /// The same.
-    pub(crate) fn of(&mut self, path: &Path) -> Result<String> {
-        if let Some(known) = self.0.get(path) {
-            return Ok(known.clone());
-        }
-        let digest = sha256_of_file(path)?;
-        self.0.insert(path.to_owned(), digest.clone());
-        Ok(digest)
     }
 }
 

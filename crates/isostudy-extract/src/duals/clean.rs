@@ -2,7 +2,7 @@
 //!
 //! **Envelopes.** Take a vertex strictly within the region of its loop ([`Region`](super::region::Region)), and a point strictly within
 //! each face that the loop crosses, in the region's part of it. Of a cell, an edge of a face, the point in that face and the vertex are the
-//! corners of a tetrahedron. All such tetrahedra of a lattice have nothing but faces, edges and corners in common: those of one loop are
+//! corners of a tetrahedron. All such tetrahedra have nothing but faces, edges and corners in common: those of one loop are
 //! cones over triangles in the rim of a convex region, from a point within; regions of a cell are apart; and so are cells. The *envelope* of a
 //! crossed edge is what has that edge: two tetrahedra in each of the four cells round it. Envelopes of different edges have no more in
 //! common than their rims, and each polygon round an edge, from vertex to point in a face to vertex, lies in the rim of its own envelope
@@ -49,9 +49,9 @@ use crate::source::{NormalsOf, Request};
 use crate::surface::normals::accumulate;
 use crate::surface::trace::{Trace, VertexKey};
 
-/// Room to work in, kept from one extraction to the next.
+/// Buffers, kept from one extraction to the next.
 #[derive(Default)]
-pub(crate) struct Room {
+pub(crate) struct Buffers {
     plans: Option<Plans>,
     /// Of each vertex its plan, and its number in it.
     numbers: Vec<(u32, usize)>,
@@ -75,7 +75,7 @@ pub(super) fn clean(
     request: &Request,
     grid: &CubeGrid,
     (sharp, tolerance): (Sharp, f32),
-    room: &mut Room,
+    room: &mut Buffers,
     trace: &mut Trace,
     extraction: &mut Extraction,
 ) -> Result<(), ExtractError> {
@@ -183,7 +183,7 @@ pub(super) fn clean(
     Ok(())
 }
 
-impl Room {
+impl Buffers {
     /// Numbers what was added, whose numbers follow those that there are, so that all vertices are in the order of their keys. Those for
     /// which others stand go.
     fn put_in_order(

@@ -43,7 +43,7 @@ pub(crate) enum VertexPer {
 /// A loop of surface round a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Loop {
-    /// The edges that it crosses, counter-clockwise seen from outside of the solid, or clockwise: as [`Cell::loops`] has them.
+    /// The edges that it crosses, counter-clockwise seen from outside the surface.
     pub(super) edges: Vec<u8>,
     /// The edges without a quadrilateral, one bit each.
     pub(super) open: u16,

@@ -229,8 +229,9 @@ impl VertexPass<'_> {
         tangents: &mut Tangents,
     ) -> Vec3 {
         let mut all: [Tangent; EDGES] = [(DVec3::ZERO, None); EDGES];
-        let mut count = 0;
+        let (mut axes, mut count) = ([0; EDGES], 0);
         for (from, axis, values) in self.crossed(plans, cell, edges) {
+            axes[count] = axis;
             all[count] = tangents.at(self.grid, from, axis, values);
             count += 1;
         }
@@ -238,13 +239,14 @@ impl VertexPass<'_> {
         let point = sharp.vertex(&all[..count], low, high);
         let Some(region) = region else { return point.as_vec3() };
         let share = |at: DVec3| (at - low) / (high - low);
-        // Crossings near the ends of their edges may be on the planes of the region.
-        let inner = |at: DVec3| {
-            let [share, off] = [share(at), DVec3::splat(ANCHOR)];
-            let is_between = share.cmpgt(DVec3::ZERO) & share.cmplt(DVec3::ONE);
-            DVec3::select(is_between, share.clamp(off, 1.0 - off), share)
+        // Crossings at the ends of their edges may be on the planes of the region.
+        let inner = |(at, axis): (DVec3, usize)| {
+            let mut share = share(at);
+            share[axis] = share[axis].clamp(ANCHOR, 1.0 - ANCHOR);
+            share
         };
-        let anchor = all[..count].iter().map(|(at, _)| inner(*at)).sum::<DVec3>() / count as f64;
+        let anchor = all[..count].iter().zip(axes).map(|(&(at, _), axis)| inner((at, axis))).sum::<DVec3>()
+            / count as f64;
         (low + region.nearest(anchor, share(point), margin(low, high, 1)) * (high - low)).as_vec3()
     }
 

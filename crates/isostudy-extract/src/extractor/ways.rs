@@ -69,7 +69,7 @@ pub(crate) struct CubeStreamer {
     #[cfg(feature = "_duals")]
     nets: Vec<duals::Workspace>,
     #[cfg(feature = "dual-contouring-clean")]
-    clean: duals::CleanRoom,
+    clean: duals::CleanBuffers,
 }
 
 impl CubeStreamer {

@@ -4,9 +4,10 @@ use super::given::{self, ENGINES, Given};
 use super::measuring::{Asked, MESH, Running, in_a_line};
 use super::page;
 use crate::consent;
+use crate::digests::Digests;
 use crate::machine;
 use crate::outcome::Outcome;
-use crate::store::{Digests, remove_if_there, sha256, write_whole};
+use crate::store::{remove_if_there, sha256, write_whole};
 use crate::terminal::counted;
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -20,6 +21,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -67,8 +69,8 @@ pub(super) struct Arguments {
 struct Known {
     rows: Vec<EngineRow>,
     machine: String,
-    /// Of each file that a command names.
-    files: Vec<(PathBuf, String)>,
+    /// Of the files that commands name.
+    digests: RefCell<Digests>,
 }
 
 /// All that an engine's results depend on: its table, what it told, and the files that its command names.
@@ -84,9 +86,8 @@ struct Identity<'a> {
 impl Known {
     fn identity<'a>(&'a self, running: &'a Running) -> Result<Identity<'a>> {
         let engine = running.engine;
-        let digest =
-            |file: PathBuf| self.files.iter().find(|(known, _)| *known == file).map(|(_, of)| of.clone());
-        let files = running.program.files()?.into_iter().filter_map(digest).collect();
+        let digest = |file: &PathBuf| self.digests.borrow_mut().of(file);
+        let files = running.program.files()?.iter().map(digest).collect::<Result<_>>()?;
         Ok(Identity {
             build: [env!("ISOSTUDY_COMMIT"), env!("ISOSTUDY_DIRTY")],
             machine: &self.machine,
@@ -171,15 +172,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome> {
     let first = engines[ours].engine;
     let again = Engine { id: format!("{} again", first.id), ..first.clone() };
     engines.push(Running { is_second: true, ..Running::start(&again, program(&again))? });
-    let (mut files, mut digests) = (Vec::new(), Digests::default());
-    for running in &engines {
-        for file in running.program.files()? {
-            let digest = digests.of(&file)?;
-            files.push((file, digest));
-        }
-    }
     let machine = machine::read().model.unwrap_or_default();
-    let known = Known { rows: about_engines.clone(), machine, files };
+    let known = Known { rows: about_engines.clone(), machine, digests: RefCell::default() };
 
     let rows = measure(out, &given, &mut engines, &known, rounds)?;
     let (conformance, with_tunnels) = conformance(out, &mut engines, &known, volumes, side)?;
